@@ -1,0 +1,25 @@
+# Compiler flags. Every target of Kestrel links kestrel_options; nothing sets flags elsewhere.
+add_library(kestrel_options INTERFACE)
+target_compile_options(kestrel_options INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Werror
+    # The CPU oracles must round as the shaders do: no fused multiply-add behind our back.
+    -ffp-contract=off)
+
+if(KESTREL_CONFIG STREQUAL "release")
+    target_compile_options(kestrel_options INTERFACE -O2)
+elseif(KESTREL_CONFIG STREQUAL "debug")
+    target_compile_options(kestrel_options INTERFACE -O1 -g)
+    target_compile_definitions(kestrel_options INTERFACE KESTREL_DEBUG=1)
+elseif(KESTREL_CONFIG STREQUAL "sanitize")
+    target_compile_options(kestrel_options INTERFACE -O1 -g -fno-omit-frame-pointer
+                           -fsanitize=address,undefined -fno-sanitize-recover=undefined)
+    target_link_options(kestrel_options INTERFACE -fsanitize=address,undefined)
+    target_compile_definitions(kestrel_options INTERFACE KESTREL_DEBUG=1 KESTREL_SANITIZE=1)
+else()
+    message(FATAL_ERROR "KESTREL_CONFIG is '${KESTREL_CONFIG}'; it must be release, debug or sanitize")
+endif()
+
+find_program(MOLD mold)
+if(MOLD)
+    target_link_options(kestrel_options INTERFACE -fuse-ld=mold)
+endif()

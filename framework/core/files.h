@@ -1,0 +1,39 @@
+// Files: bounded reading, writing through a temporary name, and paths that must not leave a folder.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kestrel {
+
+// No input file may be larger: a stranger's file cannot make the program allocate without bound.
+inline constexpr std::uintmax_t maxFileBytes = std::uintmax_t{2} << 30;
+
+// The whole file. Throws InputError naming the file if it is missing, not a plain file, or larger than
+// `limit`.
+std::vector<std::byte> readBytes(const std::filesystem::path& file, std::uintmax_t limit = maxFileBytes);
+std::string readText(const std::filesystem::path& file, std::uintmax_t limit = maxFileBytes);
+
+// Writes to a temporary name beside `file`, then renames, so that no reader ever sees half a file. Makes the
+// parent folder if it lacks. Throws InputError naming the file and the system's reason; nothing is left
+// behind then.
+void writeFile(const std::filesystem::path& file, std::span<const std::byte> bytes);
+void writeFile(const std::filesystem::path& file, std::string_view text);
+
+// The path of `relative` (a URI path from an untrusted file) inside `folder`. Throws InputError if it is
+// absolute or leaves the folder, also through a symbolic link.
+std::filesystem::path pathInside(const std::filesystem::path& folder, std::string_view relative);
+
+// The folder that holds `shaders` and `graphs`: $KESTREL_SHARE, or share/kestrel beside the folder of
+// libkestrel (the same layout in the build tree and when installed). Throws MachineError if there is none.
+std::filesystem::path shareFolder();
+
+// The folder of the plugins: $KESTREL_PLUGINS, or `kestrel/` beside libkestrel.
+std::filesystem::path pluginFolder();
+
+} // namespace kestrel

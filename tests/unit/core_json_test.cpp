@@ -1,0 +1,59 @@
+#include "core/json.h"
+#include <gtest/gtest.h>
+
+namespace kestrel {
+namespace {
+
+TEST(Json, KnowsWhereEachValueStands) {
+    const Json json =
+        Json::parse("{\n  \"a\": [1, -2.5e1, \"x\\\"y\"],\n  \"\u00e4\": true, \"b\": {}\n}", "f.json");
+    EXPECT_EQ(json.where.text(), "f.json:1:1");
+    const Json* a = json.find("a");
+    ASSERT_NE(a, nullptr);
+    EXPECT_EQ(a->where.text(), "f.json:2:8");
+    EXPECT_EQ(a->items[1].where.text(), "f.json:2:12");
+    EXPECT_DOUBLE_EQ(a->items[1].number, -25);
+    EXPECT_EQ(a->items[2].where.text(), "f.json:2:20");
+    EXPECT_EQ(a->items[2].text, "x\"y");
+    EXPECT_EQ(json.members[2].where.text(), "f.json:3:14"); // a two-byte letter is one column
+    EXPECT_EQ(json.find("b")->where.text(), "f.json:3:19");
+}
+
+std::string messageOf(std::string_view text) {
+    try {
+        Json::parse(text, "f.json");
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(Json, RefusesWhatIsNotJsonWithItsPlace) {
+    EXPECT_EQ(messageOf("{\n \"a\": tru\n}").substr(0, 20), "f.json:2:10: not JSON");
+    EXPECT_EQ(messageOf("{\"a\": 1,\n\"a\": 2}"),
+              "f.json:2:1: the key 'a' stands twice in one object (first on line 1)");
+    EXPECT_EQ(messageOf(std::string(70, '[')), "f.json:1:65: nested deeper than 64 levels");
+}
+
+TEST(Json, FieldsCollectEveryMistake) {
+    const Json json = Json::parse(R"({"nmae": 1, "size": "big"})", "f.json");
+    std::vector<Problem> problems;
+    JsonFields fields(json, "a pass", problems);
+    EXPECT_EQ(fields.required("name", Json::Kind::String), nullptr);
+    EXPECT_EQ(fields.optional("size", Json::Kind::Int), nullptr);
+    fields.refuseOthers();
+    ASSERT_EQ(problems.size(), 3u);
+    EXPECT_EQ(problems[0].text(), "f.json:1:1: a pass needs 'name'");
+    EXPECT_EQ(problems[1].text(), "f.json:1:21: 'size' of a pass must be a whole number, not a string");
+    EXPECT_EQ(problems[2].text(), "f.json:1:2: a pass has no key 'nmae' (did you mean 'name'?)");
+}
+
+TEST(NearName, FindsSlipsAndLeavesStrangersAlone) {
+    const std::vector<std::string> names = {"normal", "depth", "albedo"};
+    EXPECT_EQ(nearName("nromal", names), "normal");
+    EXPECT_EQ(nearName("dept", names), "depth");
+    EXPECT_EQ(nearName("visibility", names), "");
+}
+
+} // namespace
+} // namespace kestrel
