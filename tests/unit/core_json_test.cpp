@@ -29,7 +29,7 @@ std::string messageOf(std::string_view text) {
 }
 
 TEST(Json, RefusesWhatIsNotJsonWithItsPlace) {
-    EXPECT_EQ(messageOf("{\n \"a\": tru\n}").substr(0, 20), "f.json:2:10: not JSON");
+    EXPECT_EQ(messageOf("{\n \"a\": tru\n}").substr(0, 21), "f.json:2:10: not JSON");
     EXPECT_EQ(messageOf("{\"a\": 1,\n\"a\": 2}"),
               "f.json:2:1: the key 'a' stands twice in one object (first on line 1)");
     EXPECT_EQ(messageOf(std::string(70, '[')), "f.json:1:65: nested deeper than 64 levels");

@@ -1,0 +1,88 @@
+// The scene flattened at one time: triangles in world space relative to Scene::origin ("render space"), what
+// every rasterizer and ray tracer reads. Instances, skins and morph targets are resolved here, on the CPU,
+// once a frame.
+#pragma once
+#include "scene/bounds.h"
+#include "scene/scene.h"
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kestrel {
+
+// Everything of a vertex but its position, in render space.
+struct VertexAttributes {
+    glm::vec3 normal{0, 0, 1}; // unit
+    glm::vec4 tangent{0};      // w = 0: none
+    glm::vec2 texCoord{0}, texCoord1{0};
+    glm::vec4 colour{1}; // linear
+};
+
+// Triangles are sorted by class so that one draw call serves a class.
+enum class TriangleClass : std::uint8_t {
+    Opaque,            // back faces may be culled
+    OpaqueDoubleSided, //
+    Masked,            // alpha test; treated as double-sided where the material says so
+    MaskedDoubleSided,
+    Count
+};
+
+struct Geometry {
+    std::vector<glm::vec3> positions;         // render space
+    std::vector<glm::vec3> previousPositions; // at the previous frame's time; empty if nothing moves
+    std::vector<VertexAttributes> attributes; // as long as positions
+    std::vector<std::uint32_t> indices; // 3 a triangle; winding is counter-clockwise seen from the front,
+                                        // also under mirroring transforms
+    std::vector<std::uint32_t> materials; // one a triangle: index into the scene's materials (the default
+                                          // material is appended by flatten() as the last one)
+    struct Range {
+        std::uint32_t first = 0, count = 0; // in triangles
+    };
+    Range ranges[static_cast<size_t>(TriangleClass::Count)];
+    Box bounds; // of this frame
+
+    [[nodiscard]] std::uint32_t triangleCount() const {
+        return static_cast<std::uint32_t>(indices.size() / 3);
+    }
+};
+
+// A camera at one time, relative to Scene::origin.
+struct CameraState {
+    glm::mat4 view{1};     // render space to eye space (looking along -z)
+    glm::vec3 position{0}; // render space
+    bool orthographic = false;
+    float verticalFov = 0.8f, halfHeight = 1, aspect = 0, nearPlane = 0.01f, farPlane = 100;
+    // Reversed-z projection: near plane to depth 1, far plane (or infinity) to 0; depth range [0, 1].
+    // `aspect` is the frame's, used where the camera has none of its own.
+    [[nodiscard]] glm::mat4 projection(float frameAspect) const;
+    friend bool operator==(const CameraState&, const CameraState&) = default;
+};
+
+// A light at one time, relative to Scene::origin.
+struct LightState {
+    LightKind kind = LightKind::Point;
+    glm::vec3 position{0}, direction{0, 0, -1};     // direction of shining, unit
+    glm::vec3 tangent{1, 0, 0}, bitangent{0, 1, 0}; // of a rectangle
+    glm::vec3 intensity{1};                         // colour times intensity
+    float range = 0, innerCone = 0, outerCone = 0.785398f;
+    glm::vec2 halfSize{0};
+    friend bool operator==(const LightState&, const LightState&) = default;
+};
+
+// The materials that Geometry::materials indexes: the scene's, then glTF's default material.
+std::vector<Material> flattenedMaterials(const Scene& scene);
+
+// Flattens at `time` seconds (clamped to the timeline, looping is the caller's). Triangles with a NaN or
+// infinite position are refused on import, so there are none here; degenerate ones are kept. Throws
+// InputError above maxTriangles. The order of vertices and triangles does not depend on the time.
+inline constexpr std::uint64_t maxTriangles = 64'000'000;
+Geometry flatten(const Scene& scene, double time);
+// As flatten(), filling `previousPositions` from `previousTime` where anything moves.
+Geometry flatten(const Scene& scene, double time, double previousTime);
+
+CameraState cameraAt(const Scene& scene, int camera, double time);
+std::vector<LightState> lightsAt(const Scene& scene, double time);
+// Index of the camera of that name; empty: the first. Throws InputError with the near name.
+int cameraIndex(const Scene& scene, const std::string& name);
+
+} // namespace kestrel
