@@ -1,0 +1,72 @@
+// The graph document: what a graph file says. Plain data; loading, editing, comparing and saving need no GL.
+#pragma once
+#include "core/error.h"
+#include "graph/registry.h"
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+struct PortRef {
+    std::string pass, port;
+    [[nodiscard]] std::string text() const { return pass + "." + port; }
+    friend bool operator==(const PortRef&, const PortRef&) = default;
+    friend auto operator<=>(const PortRef&, const PortRef&) = default;
+};
+
+struct GraphPass {
+    std::string name, type;
+    std::vector<std::pair<std::string, Value>> properties; // those that the file gives, in its order
+    std::optional<glm::dvec2> position;                    // on the editor's canvas
+    std::string comment;
+    Location where;
+    std::map<std::string, Location> propertyWhere;
+};
+
+struct GraphEdge {
+    PortRef from, to; // an output, an input
+    Location where;
+};
+
+struct GraphOutput {
+    PortRef port;
+    Location where;
+};
+
+struct Graph {
+    std::string name, comment;
+    std::string sceneSource, sceneCamera; // empty: the file names none
+    std::vector<GraphPass> passes;
+    std::vector<GraphEdge> edges;
+    std::vector<GraphOutput> outputs;
+    std::filesystem::path file; // where it was loaded from; a relative scene is relative to its folder
+
+    [[nodiscard]] const GraphPass* find(std::string_view pass) const;
+    [[nodiscard]] GraphPass* find(std::string_view pass);
+};
+
+// Reads the JSON form ("kestrel": 1). Throws InputError with every mistake of form (unknown key, wrong kind,
+// missing key), each with file:line:column. Names are not resolved here (see validate).
+Graph loadGraph(const std::filesystem::path& file);
+Graph parseGraph(std::string_view text, const std::string& file);
+
+// The canonical text: keys in fixed order, one line a pass and an edge. parse and save again give the same
+// bytes.
+std::string saveGraph(const Graph& graph);
+
+// Everything that is wrong with the graph against the registry: unknown types, ports, properties (near
+// names), wrong kinds, values out of range, inputs connected twice or not at all, cycles with their path,
+// outputs that are none. Errors come in the order of the file. Empty: valid.
+std::vector<Problem> validate(const Graph& graph, const Registry& registry);
+
+// `--set` in its two forms: "pass.property=value" sets a property, "pass.input=pass.output" moves (or adds)
+// an edge, "pass.input=" removes it. Throws InputError naming what is unknown with its near name.
+void applySetting(Graph& graph, const Registry& registry, const std::string& setting);
+
+// JSON schema (draft 2020-12) of graph files, generated from the registry's tables.
+std::string graphSchema(const Registry& registry);
+
+} // namespace kestrel

@@ -1,0 +1,159 @@
+// The interface of a pass, and what it declares. Declaring is pure and needs no GL; executing runs one step
+// at a time.
+#pragma once
+#include "graph/types.h"
+#include "scene/facts.h"
+#include "shader/source.h"
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kestrel {
+
+class Commands; // execute/commands.h: what a step may do on the GPU
+
+// What compiling depends on besides the graph.
+struct World {
+    SceneFacts facts;
+    Capabilities capabilities;
+    Extent size{640, 360, 1};                   // of the frame, in pixels
+    std::map<std::string, std::uint64_t> grown; // "pass.port" -> elements needed after an overflow
+    // Extent of an image with this view: (size + 2 guard) / divisor, rounded up.
+    [[nodiscard]] Extent extentOf(const View& view) const;
+};
+
+// What is connected to the input ports. An input that is not connected, or whose producer was left out, is
+// absent.
+class Inputs {
+public:
+    struct Input {
+        Desc desc;
+        std::optional<glm::vec4> constant; // the same value everywhere; the resource holds it too
+        Causes causes = Causes::All;       // for which it can change over the timeline
+    };
+    [[nodiscard]] bool connected(std::string_view port) const { return inputs_.find(port) != inputs_.end(); }
+    [[nodiscard]] const Input& operator[](std::string_view port) const; // check: connected
+    void set(std::string port, Input input) { inputs_.insert_or_assign(std::move(port), std::move(input)); }
+
+private:
+    std::map<std::string, Input, std::less<>> inputs_;
+};
+
+// Which outputs somebody reads, and what consumers take of the modules.
+class Demand {
+public:
+    static Demand everything() { return Demand(true); }
+    static Demand nothing() { return Demand(false); }
+    [[nodiscard]] bool reads(std::string_view port) const {
+        return all_ || ports_.find(port) != ports_.end();
+    }
+    // The union of what consumers take of a module port.
+    [[nodiscard]] Bits takes(std::string_view port) const;
+    void add(std::string port, Bits takes = 0);
+    friend bool operator==(const Demand&, const Demand&) = default;
+
+private:
+    explicit Demand(bool all)
+        : all_(all) {}
+    bool all_ = false;
+    std::map<std::string, Bits, std::less<>> ports_;
+};
+
+// One use of a port (input, output or internal) by a step or a module.
+//
+// GLSL names: a sampler or image is called as its port (`uniform sampler2D depth`), a block as its port with
+// a capital letter and without underscores (`buffer RayBuffer` for port "ray_buffer"). In a module file both
+// are wrapped in M(). With `previous` (last frame's content) the name gets "previous_" or "Previous" in
+// front. A fragment output is called "out_" + port. A uniform block called <Block name>View, as `DepthView`,
+// receives the port's ViewData (shared/view.h).
+struct Use {
+    std::string port;
+    Access access = Access::Fetch;
+    bool write = false;
+    bool previous = false; // last frame's content: keeps a history of the resource
+    bool linear = false;   // Fetch: linear filtering (and between mips); otherwise nearest
+    int mip = -1; // Image, Attachment: that level only; Fetch: restricts the levels; -1: level 0 / all levels
+};
+
+// Includes the module connected to input `port` (`#include <port:NAME>`) into the step's program.
+struct ModuleUse {
+    std::string port;
+    Bits takes = 0;
+};
+
+// One piece of work: at most one program. Barriers, clocks and debug groups stand between steps.
+struct Step {
+    std::string name; // unique within the pass
+    std::vector<std::string>
+        shaders; // files by stage, "gbuffer/gbuffer.vert"…; empty: no program (uploads, copies, host)
+    Defines defines;
+    std::vector<Use> uses; // colour attachments are numbered in this order
+    std::vector<ModuleUse> modules;
+    std::string group =
+        {}; // what the time counts as: "generation", "tracing", "filter"…; empty: the pass's name
+};
+
+// A module that this pass provides at output `port`. `uses` are ports of this pass (inputs too) that the file
+// reads; consumers inherit them. `modules` are inputs of this pass that the file includes itself.
+struct Module {
+    std::string port;
+    std::string shader;
+    Defines defines;
+    std::vector<Use> uses;
+    std::vector<ModuleUse> modules;
+};
+
+struct Output {
+    std::string port; // output or internal
+    Desc desc;
+    // Set before the pass's first step each time it runs; without it the pass writes every element.
+    std::optional<glm::vec4> clear = {};
+    // The same value everywhere: no step need write it; the compiler makes it once and tells the readers.
+    std::optional<glm::vec4> constant = {};
+    std::string same = {};    // equals this input: no resource of its own
+    std::string updates = {}; // is this input changed in place (copied first where another reader follows)
+    bool keeps = false; // the pass itself reads what it wrote in earlier frames: never shared, never lost
+};
+
+// What was left out, and why: one sentence without full stop.
+struct LeftOut {
+    std::string what, why;
+};
+
+// A mistake that only declaring can find: `port` may be empty.
+struct DeclarationProblem {
+    std::string port, message;
+};
+
+struct Declaration {
+    std::vector<Output> outputs;
+    std::vector<Module> modules;
+    std::vector<Step> steps;
+    std::vector<LeftOut> leftOut;
+    std::vector<DeclarationProblem> problems;
+    // For which causes the results change, besides those of the inputs that are read. Frame: runs every
+    // frame.
+    Causes depends = Causes::None;
+    bool always = false; // runs every frame though nothing changed (keeps a history)
+};
+
+// A technique. One object per pass of a graph; its properties are members, bound by the table of its type.
+class Pass {
+public:
+    virtual ~Pass() = default;
+    Pass() = default;
+    Pass(const Pass&) = delete;
+    Pass& operator=(const Pass&) = delete;
+
+    // Pure: no GL, no state. Called twice a compilation: forward with every demand, then with the real one.
+    // With less demand it may have fewer steps, defines and outputs; what an output means never changes.
+    [[nodiscard]] virtual Declaration declare(const World& world, const Inputs& inputs,
+                                              const Demand& demand) const = 0;
+
+    // Runs one declared step; called for each step in order, in every frame in which the pass runs.
+    virtual void execute(const Step& step, Commands& commands) = 0;
+};
+
+} // namespace kestrel

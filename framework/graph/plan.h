@@ -1,0 +1,115 @@
+// The compiled form of a graph: what to make, what to run in which order, with barriers as data. Made by
+// compile(), run by execute/executor.h, tested without GL.
+#pragma once
+#include "graph/graph.h"
+#include "shader/compose.h"
+#include <memory>
+
+namespace kestrel {
+
+// Memory barriers, named as in OpenGL; the executor maps them bit by bit to glMemoryBarrier.
+enum class Barrier : std::uint32_t {
+    None = 0,
+    VertexAttrib = 1 << 0, // and element arrays
+    Uniform = 1 << 1,
+    TextureFetch = 1 << 2,
+    ShaderImage = 1 << 3,
+    Command = 1 << 4,
+    BufferUpdate = 1 << 5, // and texture update, client mapped
+    Framebuffer = 1 << 6,
+    ShaderStorage = 1 << 7
+};
+constexpr Barrier operator|(Barrier a, Barrier b) { return Barrier(std::uint32_t(a) | std::uint32_t(b)); }
+constexpr Barrier operator&(Barrier a, Barrier b) { return Barrier(std::uint32_t(a) & std::uint32_t(b)); }
+constexpr Barrier& operator|=(Barrier& a, Barrier b) { return a = a | b; }
+
+// A virtual resource: what one output or internal port holds.
+struct PlanResource {
+    PortRef port; // its producer
+    Desc desc;
+    std::optional<glm::vec4> clear, constant;
+    bool transient = false; // can change every frame, so it may share an object with another lifetime
+    bool history = false; // somebody reads last frame's content: two objects that swap when the producer runs
+    int object = -1;      // index into Plan::objects (of a history: the first of two)
+    int firstStep = 0, lastStep = 0; // lifetime within a frame; whole frame if not transient
+};
+
+// A physical texture or buffer.
+struct PlanObject {
+    Desc desc;
+    std::string label; // ports that share it, for debuggers
+};
+
+// One resource bound to one GLSL name in a step.
+struct PlanBinding {
+    std::string name;  // sampler, image or block name in the program, module prefix included
+    std::string port;  // of the pass, for uses of the pass itself; empty for uses inherited through a module
+    int resource = -1; // index into Plan::resources
+    Access access = Access::Fetch;
+    bool write = false, previous = false, linear = false;
+    int mip = -1;
+};
+
+struct PlanStep {
+    int pass = -1; // index into Plan::passes
+    Step step;     // as declared
+    std::vector<PlanBinding> bindings;
+    int program = -1;                        // index into Plan::programs; -1: none
+    Barrier barrier = Barrier::None;         // before the step
+    std::vector<std::pair<int, int>> copies; // resources copied before the step (from, to): in-place updates
+                                             // with another reader
+};
+
+struct PlanPass {
+    std::string name, type;
+    std::shared_ptr<Pass> instance;
+    Causes depends = Causes::None;
+    bool always = false;
+    int firstStep = 0, stepCount = 0;
+    std::vector<int> inputs;          // passes whose causes this one inherits (also through modules)
+    std::map<std::string, int> ports; // port -> resource (inputs too, resolved to their producer)
+    std::map<std::string, std::vector<int>>
+        inputPasses;                   // input port -> producing passes (transitively for modules)
+    std::map<std::string, Desc> descs; // port -> what stands behind it (modules too)
+};
+
+struct PlanOutput {
+    PortRef port; // as the graph asks
+    int resource = -1;
+};
+
+struct MemoryReport {
+    std::uint64_t transient = 0; // with sharing
+    std::uint64_t unshared = 0;  // the same resources without sharing
+    std::uint64_t persistent = 0;
+};
+
+struct Plan {
+    std::vector<PlanResource> resources;
+    std::vector<PlanObject> objects;
+    std::vector<PlanPass> passes; // in order of execution
+    std::vector<PlanStep> steps;
+    std::vector<ProgramRequest> programs; // without duplicates
+    std::vector<PlanOutput> outputs;
+    std::vector<LeftOut> leftOut;
+    MemoryReport memory;
+    Extent size;
+};
+
+struct CompileOptions {
+    bool keepAll = false; // nothing is left out: every pass of the graph runs with every demand it can bear
+    bool shareMemory = true;
+    std::vector<PortRef> previews; // further ports that somebody wants to see
+};
+
+// Pass objects by name, with the graph's properties set. Reuse them over compilations to keep host-side
+// state.
+using PassSet = std::map<std::string, std::shared_ptr<Pass>>;
+PassSet makePasses(const Graph& graph, const Registry& registry);
+
+// Compiles in named stages (see compile.cpp). The graph must be valid. Throws InputError with every problem
+// that the declarations report, with the place of the pass in the graph file.
+Plan compile(const Graph& graph, const Registry& registry, const PassSet& passes, const World& world,
+             const CompileOptions& options = {});
+
+} // namespace kestrel

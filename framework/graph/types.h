@@ -1,0 +1,133 @@
+// The small types that ports, declarations and plans are made of. Plain data, no GL.
+#pragma once
+#include "graph/format.h"
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace kestrel {
+
+// What a port carries. The last four are shader modules (design: ports).
+enum class PortKind : std::uint8_t { Texture, Buffer, Tracer, Hits, Layers, Radiance };
+[[nodiscard]] std::string_view portKindName(PortKind kind); // "texture", "tracer", …
+[[nodiscard]] constexpr bool isModule(PortKind kind) { return kind >= PortKind::Tracer; }
+
+enum class PortDirection : std::uint8_t {
+    Input,
+    Output,
+    Internal // a resource of the pass itself: made like an output, cannot be connected, can be previewed
+};
+
+// A property's value as it stands in JSON. Enumerations are strings.
+using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
+
+// How a step touches a port.
+enum class Access : std::uint8_t {
+    Fetch,      // sampler (texture) or samplerBuffer (buffer)
+    Image,      // image (texture) or imageBuffer (buffer): the fastest random read on a CPU driver
+    Storage,    // shader storage block
+    Uniform,    // uniform block
+    Attachment, // colour or depth attachment
+    Vertex,     // vertex or index fetch
+    Indirect,   // indirect command
+    Copy,       // upload, copy, clear by the driver
+    Host        // read back by the CPU
+};
+
+// The causes for which something may change from one frame to the next.
+enum class Causes : std::uint32_t {
+    None = 0,
+    Frame = 1 << 0,      // a new frame index: jitter, random numbers
+    Camera = 1 << 1,     // the camera moved
+    Cut = 1 << 2,        // another camera, a jump in time
+    Geometry = 1 << 3,   // other triangles: another scene, a deformation
+    Transforms = 1 << 4, // things moved
+    Materials = 1 << 5,
+    Lights = 1 << 6,
+    Properties = 1 << 7,
+    Size = 1 << 8,
+    All = (1 << 9) - 1
+};
+constexpr Causes operator|(Causes a, Causes b) { return Causes(std::uint32_t(a) | std::uint32_t(b)); }
+constexpr Causes operator&(Causes a, Causes b) { return Causes(std::uint32_t(a) & std::uint32_t(b)); }
+constexpr Causes operator~(Causes a) { return Causes(~std::uint32_t(a) & std::uint32_t(Causes::All)); }
+constexpr Causes& operator|=(Causes& a, Causes b) { return a = a | b; }
+constexpr bool any(Causes a) { return a != Causes::None; }
+
+// The view that an image was made with. Whoever reads a depth reads it with this view.
+struct View {
+    int camera = 0;      // 0: the frame's camera
+    int divisor = 1;     // the image has 1/divisor of the frame's resolution per axis
+    int guard = 0;       // extra pixels on each side, in pixels of the frame
+    bool jitter = false; // sub-pixel offset that changes with the frame
+    friend bool operator==(const View&, const View&) = default;
+};
+
+struct Extent {
+    std::uint32_t width = 1, height = 1;
+    std::uint32_t depth = 1; // of a 3D texture; layers of an array
+    friend bool operator==(const Extent&, const Extent&) = default;
+};
+
+enum class ResourceKind : std::uint8_t { Texture2D, Texture2DArray, TextureCube, Texture3D, Buffer, Module };
+
+// Bits that modules give and consumers take (design: gives and takes).
+using Bits = std::uint32_t;
+namespace gives {
+inline constexpr Bits Surface = 1 << 0; // normal and material at a hit, not the position alone
+inline constexpr Bits Snaps =
+    1 << 1; // can trace along a nearby candidate direction when the consumer bears it
+inline constexpr Bits AlwaysSnaps = 1 << 2; // cannot trace the exact direction
+inline constexpr Bits Approximate =
+    1 << 3; // hits are those of a proxy (voxels, distances), not of the triangles
+} // namespace gives
+namespace takes {
+inline constexpr Bits AnyHit = 1 << 0;
+inline constexpr Bits ClosestHit = 1 << 1;
+inline constexpr Bits Surface = 1 << 2; // needs gives::Surface
+inline constexpr Bits BearsSnap =
+    1 << 3; // the direction may be replaced by a nearby one (defines TAKES_SNAP)
+inline constexpr Bits AllHits = 1 << 4;
+} // namespace takes
+
+// Describes what stands behind a port.
+struct Desc {
+    ResourceKind kind = ResourceKind::Texture2D;
+    Format format = Format::None; // of a buffer: the texel format for Fetch and Image access
+    Extent extent;
+    int mips = 1;
+    std::uint64_t bytes = 0; // of a buffer
+    View view;
+    Bits gives = 0; // of a module
+    friend bool operator==(const Desc&, const Desc&) = default;
+
+    static Desc texture2D(Format format, Extent extent, View view = {});
+    static Desc texture3D(Format format, Extent extent, int mips = 1);
+    static Desc array2D(Format format, Extent extent);
+    static Desc buffer(std::uint64_t bytes, Format texel = Format::None);
+    static Desc module(Bits gives);
+    // Bytes of all mips and layers.
+    [[nodiscard]] std::uint64_t totalBytes() const;
+};
+
+// "rgba16f 640x360", "buffer 4 MiB"…: for messages and reports.
+std::string describe(const Desc& desc);
+
+// What the context can do, as plain data: from the context, or the minimum of OpenGL 4.6.
+struct Capabilities {
+    std::string renderer = "none", version = "4.6";
+    std::set<std::string> extensions;
+    int maxComputeImages = 8, maxStorageBlocks = 8, maxTextureUnits = 16, maxUniformBlocks = 12;
+    int maxTextureSize = 16384, max3DTextureSize = 2048, maxArrayLayers = 2048;
+    int maxComputeSharedBytes = 32768, maxComputeInvocations = 1024;
+    std::int64_t maxTextureBufferTexels = 65536;
+    std::int64_t maxStorageBlockBytes = std::int64_t{1} << 27;
+    bool software = false; // a CPU renderer: timer queries do not measure the work
+    [[nodiscard]] bool has(const std::string& extension) const { return extensions.contains(extension); }
+};
+
+} // namespace kestrel
