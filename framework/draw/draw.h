@@ -1,0 +1,28 @@
+// State of a draw call. Everything that is not said here is set to the stated default before each draw.
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+namespace kestrel {
+
+enum class Compare : std::uint8_t { Always, Greater, GreaterEqual, Equal, Less };
+enum class Cull : std::uint8_t { None, Back, Front };
+enum class Blend : std::uint8_t { None, Add, Over };
+
+struct DrawState {
+    Compare depth = Compare::Greater; // depth is reversed: nearer is greater
+    bool depthWrite = true;
+    Cull cull = Cull::Back; // of single-sided classes only; double-sided ones are never culled
+    Blend blend = Blend::None;
+    bool colourWrite = true;
+    bool logicOr = false; // glLogicOp(GL_OR) on integer attachments
+    bool depthClamp = false;
+    std::optional<glm::uvec2> viewport; // without attachments: the size of the rasterized area
+
+    static DrawState overwrite() {
+        return {.depth = Compare::Always, .depthWrite = false, .cull = Cull::None};
+    }
+};
+
+} // namespace kestrel
