@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,7 +41,8 @@ public:
     // such file.
     const std::string& text(const std::string& path);
 
-    // The text, or null if there is no such file (missing() then says what to tell the user).
+    // The text, or null if there is no such file (missing() then says what to tell the user). Throws
+    // InputError if the file is there and cannot be read.
     const std::string* find(const std::string& path);
 
     // The sentence about a path that is not there: the folders searched and the near name.
@@ -76,6 +78,7 @@ private:
     std::vector<std::filesystem::path> folders_;
     std::map<std::string, std::string> virtual_;
     std::map<std::string, CachedText> cache_;
+    std::set<std::string> missed_; // paths that find() did not find
 };
 
 } // namespace kestrel
