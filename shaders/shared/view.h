@@ -2,6 +2,8 @@
 #pragma once
 #include "shared/glsl_types.h"
 
+SHARED_BEGIN
+
 // The reserved uniform block `Frame`, bound to every program that declares it.
 struct FrameData {
     uvec2 size;     // of the frame, pixels
@@ -31,3 +33,5 @@ struct ViewData {
     float nearPlane;
     float farPlane;          // 0: infinite
 };
+
+SHARED_END

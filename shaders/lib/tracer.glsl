@@ -1,0 +1,33 @@
+// The module interface `tracer`: what a consumer calls, whoever answers. A provider defines, wrapped in M():
+//
+//     void M(aim)(inout Ray ray)                  fixes the direction that will really be traced, and says so
+//     bool M(anyHit)(Ray ray)                     is anything between tMin and tMax?
+//     bool M(closestHit)(Ray ray, out Hit hit)    the nearest of it             (if TAKES_CLOSEST or TAKES_SURFACE)
+//     Surface M(surface)(Ray ray, Hit hit)        evaluates a hit               (if TAKES_SURFACE)
+//
+// A consumer fills a Ray, calls aim once, then traces. Everything is in render space.
+#include "lib/surface.glsl"
+
+const float rayInfinity = uintBitsToFloat(0x7f800000u);
+
+struct Ray {
+    vec3 origin;    // on a surface: the surface point itself; each tracer moves it off by its own measure
+    vec3 normal;    // geometric normal at the origin, on the side the ray leaves to; zero if there is no surface
+    vec3 direction; // unit; aim may replace it by a nearby one where the consumer bears snapping (TAKES_SNAP)
+    float tMin;
+    float tMax;     // rayInfinity: unbounded
+    // Multiplied by aim: the cosine at `normal` of the direction really traced over the mean cosine of what could have
+    // been chosen in its place, 0 for a direction below the horizon (do not trace it). 1 if nothing was replaced.
+    float weight;
+    uint token;     // the tracer's own, from aim to the queries
+};
+
+struct Hit {
+    float t;     // along the ray that was traced
+    uint source; // which part of a composite tracer answered
+    uvec2 id;    // opaque
+};
+
+Ray surfaceRay(vec3 origin, vec3 normal, vec3 direction) {
+    return Ray(origin, normal, direction, 0.0, rayInfinity, 1.0, 0u);
+}

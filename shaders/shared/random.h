@@ -1,0 +1,75 @@
+// Random numbers as functions of (pixel, frame, dimension): no running state, so leaving out one consumer of numbers
+// never changes another. The same bits on both sides of the C++/GLSL border.
+#pragma once
+#include "shared/glsl_types.h"
+
+SHARED_BEGIN
+
+// Named dimensions: one pair per use, so that two uses never share numbers by accident.
+const uint randomRayDirection = 0u; // two a ray: 2 * ray index is added
+const uint randomCandidates = 1024u;
+const uint randomGridJitter = 1025u;
+const uint randomLight = 2048u;
+const uint randomReference = 4096u;
+
+// Integer hash with good avalanche (multiply, xor-shift; constants found by search, "lowbias32").
+inline uint hashUint(uint x) {
+    x ^= x >> 16u;
+    x *= 0x7feb352du;
+    x ^= x >> 15u;
+    x *= 0x846ca68bu;
+    x ^= x >> 16u;
+    return x;
+}
+
+inline uint hashCombine(uint a, uint b) { return hashUint(a ^ (b + 0x9e3779b9u + (a << 6u) + (a >> 2u))); }
+
+// [0, 1) from the 24 high bits: exact in float, never 1.
+inline float unitFloat(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8f; }
+
+inline uint reverseBits32(uint x) {
+    x = (x << 16u) | (x >> 16u);
+    x = ((x & 0x00ff00ffu) << 8u) | ((x & 0xff00ff00u) >> 8u);
+    x = ((x & 0x0f0f0f0fu) << 4u) | ((x & 0xf0f0f0f0u) >> 4u);
+    x = ((x & 0x33333333u) << 2u) | ((x & 0xccccccccu) >> 2u);
+    return ((x & 0x55555555u) << 1u) | ((x & 0xaaaaaaaau) >> 1u);
+}
+
+// Owen scrambling of a bit-reversed number as a hash in which higher bits depend only on lower ones
+// (Laine and Karras, "Stratified Sampling for Stochastic Transparency", 2011, section 3).
+inline uint laineKarras(uint x, uint seed) {
+    x += seed;
+    x ^= x * 0x6c50b47cu;
+    x ^= x * 0xb82f1e52u;
+    x ^= x * 0xc7afe638u;
+    x ^= x * 0x8d22f6e6u;
+    return x;
+}
+
+inline uint owenScramble(uint x, uint seed) { return reverseBits32(laineKarras(reverseBits32(x), seed)); }
+
+// Second dimension of the Sobol sequence; the first is reverseBits32.
+inline uint sobol1(uint index) {
+    uint result = 0u;
+    uint direction = 0x80000000u;
+    for (uint bits = index; bits != 0u; bits >>= 1u) {
+        if ((bits & 1u) != 0u) result ^= direction;
+        direction ^= direction >> 1u;
+    }
+    return result;
+}
+
+// Sample `index` of the (0,2)-sequence that belongs to `seed`: shuffled and Owen-scrambled Sobol points (Burley,
+// "Practical Hash-based Owen Scrambling", 2020). Any 2^k consecutive samples from a multiple of 2^k are stratified.
+inline vec2 scrambledSobol(uint index, uint seed) {
+    uint shuffled = owenScramble(index, seed);
+    uint x = owenScramble(reverseBits32(shuffled), hashCombine(seed, 1u));
+    uint y = owenScramble(sobol1(shuffled), hashCombine(seed, 2u));
+    return vec2(unitFloat(x), unitFloat(y));
+}
+
+inline uint pixelSeed(uvec2 pixel, uint dimension, uint seed) {
+    return hashCombine(hashCombine(hashCombine(seed, pixel.x), pixel.y), dimension);
+}
+
+SHARED_END
