@@ -1,0 +1,26 @@
+// Built-in scenes: procedural, deterministic, each with named cameras and what its name promises.
+#pragma once
+#include "scene/scene.h"
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+struct BuiltinInfo {
+    std::string name;     // "tower"
+    std::string sentence; // what it shows
+};
+
+// Whether `source` starts with "builtin:", whatever follows.
+bool isBuiltin(const std::string& source);
+
+// All built-in scenes, in the order of listing.
+std::vector<BuiltinInfo> builtinInfos();
+std::vector<std::string> builtinNames();
+
+// Builds "builtin:NAME" or "builtin:NAME?detail=D". Detail, 0.01 to 4, default 1, scales the number of
+// triangles: small values serve tests and keep the look. finishScene() has not been called on the result.
+// Throws InputError with the near name for an unknown scene or key, and for a detail out of range.
+Scene builtinScene(const std::string& source);
+
+} // namespace kestrel
