@@ -5,6 +5,7 @@
 #include "scene/bounds.h"
 #include "scene/scene.h"
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -31,8 +32,8 @@ struct Geometry {
     std::vector<glm::vec3> positions;         // render space
     std::vector<glm::vec3> previousPositions; // at the previous frame's time; empty if nothing moves
     std::vector<VertexAttributes> attributes; // as long as positions
-    std::vector<std::uint32_t> indices; // 3 a triangle; winding is counter-clockwise seen from the front,
-                                        // also under mirroring transforms
+    std::vector<std::uint32_t> indices;   // 3 a triangle; winding is counter-clockwise seen from the front,
+                                          // also under mirroring transforms
     std::vector<std::uint32_t> materials; // one a triangle: index into the scene's materials (the default
                                           // material is appended by flatten() as the last one)
     struct Range {
@@ -74,13 +75,39 @@ std::vector<Material> flattenedMaterials(const Scene& scene);
 
 // Flattens at `time` seconds (clamped to the timeline, looping is the caller's). Triangles with a NaN or
 // infinite position are refused on import, so there are none here; degenerate ones are kept. Throws
-// InputError above maxTriangles. The order of vertices and triangles does not depend on the time.
+// InputError above maxTriangles or maxVertices (an instance counts each time). The order of vertices and
+// triangles does not depend on the time.
 inline constexpr std::uint64_t maxTriangles = 64'000'000;
+inline constexpr std::uint64_t maxVertices = 64'000'000;
 Geometry flatten(const Scene& scene, double time);
 // As flatten(), filling `previousPositions` from `previousTime` where anything moves.
 Geometry flatten(const Scene& scene, double time, double previousTime);
 
+// flatten() for one frame after another: what does not move is computed once, so a frame costs what moves.
+// The results equal flatten()'s to the bit.
+class Flattener {
+public:
+    // Lays out vertices and triangles. `scene` must outlive the Flattener and must not change under it.
+    explicit Flattener(const Scene& scene);
+    Flattener(Flattener&&) noexcept;
+    Flattener& operator=(Flattener&&) noexcept;
+    ~Flattener();
+    // The reference is valid until the next call.
+    const Geometry& at(double time);
+    const Geometry& at(double time, double previousTime);
+    // The result of the last call; the Flattener is spent then.
+    [[nodiscard]] Geometry take() &&;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// The camera at `time`. A mirroring or scaling node above it does not mirror or scale the picture; the scale
+// of Scene::rootTransform multiplies the near and far plane and the half height.
 CameraState cameraAt(const Scene& scene, int camera, double time);
+// The lights at `time`, in the order of Scene::lights. The scale s of Scene::rootTransform multiplies range
+// and size, and by s * s the candela of Point and Spot, so that a scaled scene is lit alike.
 std::vector<LightState> lightsAt(const Scene& scene, double time);
 // Index of the camera of that name; empty: the first. Throws InputError with the near name.
 int cameraIndex(const Scene& scene, const std::string& name);

@@ -16,6 +16,7 @@ struct TextureImage {
     std::string name;
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba; // 4 * width * height
+    friend bool operator==(const TextureImage&, const TextureImage&) = default;
 };
 
 // Reference from a material to an image, with sampler and KHR_texture_transform.
@@ -43,6 +44,7 @@ struct Material {
     float transmission = 0; // KHR_materials_transmission
     float ior = 1.5f;       // KHR_materials_ior
     TextureRef baseColourTexture, metallicRoughnessTexture, normalTexture, emissionTexture;
+    friend bool operator==(const Material&, const Material&) = default;
 };
 
 } // namespace kestrel

@@ -15,7 +15,8 @@ namespace kestrel {
 // One triangle list with one material. Attribute vectors are empty or as long as `positions`.
 struct Primitive {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals; // unit; generated (flat, as glTF asks) on import where a file has none
+    std::vector<glm::vec3>
+        normals; // unit; generated (flat, as glTF asks) by finishScene() where there are none
     std::vector<glm::vec4>
         tangents; // w is the handedness; empty unless the file has them or a normal map needs them
     std::vector<glm::vec2> texCoords; // TEXCOORD_0
@@ -25,22 +26,30 @@ struct Primitive {
     std::vector<glm::vec4> weights;     // sum to 1
     std::vector<std::uint32_t> indices; // 3 a triangle
     int material = -1;                  // -1: glTF's default material
-    struct MorphTarget {                // displacements; empty or as long as positions
+    // Set where finishScene() generated the normals: triangle i then has the vertices 3i, 3i+1, 3i+2 for
+    // itself, and flattening takes the normal from the deformed triangle, as glTF asks under morphs and
+    // skins.
+    bool flatNormals = false;
+    struct MorphTarget { // displacements; empty or as long as positions
         std::vector<glm::vec3> positions, normals, tangents;
+        friend bool operator==(const MorphTarget&, const MorphTarget&) = default;
     };
     std::vector<MorphTarget> targets;
+    friend bool operator==(const Primitive&, const Primitive&) = default;
 };
 
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
     std::vector<float> weights; // default morph weights
+    friend bool operator==(const Mesh&, const Mesh&) = default;
 };
 
 struct Skin {
     std::string name;
-    std::vector<int> joints; // node indices
-    std::vector<glm::mat4> inverseBind;
+    std::vector<int> joints;            // node indices
+    std::vector<glm::mat4> inverseBind; // one a joint
+    friend bool operator==(const Skin&, const Skin&) = default;
 };
 
 // A pinhole camera. It looks along -z of its node, y up.
@@ -52,6 +61,7 @@ struct Camera {
     float halfHeight = 1;                    // orthographic
     float nearPlane = 0.01f, farPlane = 100; // in scene units; far <= 0: infinite
     int node = -1;
+    friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 enum class LightKind : std::uint8_t { Point, Spot, Directional, Rectangle, Sphere };
@@ -68,6 +78,7 @@ struct Light {
     float innerCone = 0, outerCone = 0.785398f; // radians
     glm::vec2 halfSize{0};                      // rectangle: half extents along x and y; sphere: radius in x
     int node = -1;
+    friend bool operator==(const Light&, const Light&) = default;
 };
 
 // A node. Transforms are double: a scene may stand far from the origin (see Scene::origin).
@@ -81,6 +92,7 @@ struct Node {
     std::optional<glm::dmat4> matrix; // replaces translation, rotation, scale where the file gives one
     int mesh = -1, skin = -1, camera = -1, light = -1;
     std::vector<float> weights; // morph weights, empty: the mesh's
+    friend bool operator==(const Node&, const Node&) = default;
 };
 
 enum class Interpolation : std::uint8_t { Step, Linear, CubicSpline };
@@ -93,11 +105,13 @@ struct AnimationChannel {
     std::vector<float> times;  // seconds, strictly rising
     std::vector<float> values; // components a key: 3, 4 (x y z w) or the number of weights; three times that
                                // for CubicSpline (in-tangent, value, out-tangent)
+    friend bool operator==(const AnimationChannel&, const AnimationChannel&) = default;
 };
 
 struct Animation {
     std::string name;
     std::vector<AnimationChannel> channels;
+    friend bool operator==(const Animation&, const Animation&) = default;
 };
 
 struct Scene {
@@ -114,7 +128,8 @@ struct Scene {
     std::vector<Animation> animations;
     std::vector<std::string> warnings; // what the file asks for and Kestrel lacks, each named once
     // Multiplied in front of all roots, in double precision: scaling, moving, turning a whole scene (stress
-    // cases).
+    // cases). Its scale acts on lengths of cameras and lights too (see cameraAt(), lightsAt()), so that a
+    // scaled scene gives the same picture; the scale of other nodes does not, as glTF says.
     glm::dmat4 rootTransform{1};
     // World-space point that all float coordinates (Geometry, cameras, lights on the GPU) are relative to:
     // the centre of the bounds over the whole timeline. Set by finishScene().
@@ -125,8 +140,10 @@ struct Scene {
     [[nodiscard]] double duration() const;
 };
 
-// Completes a scene after loading or building: world bounds over the timeline, `origin`, tangents where a
-// normal map needs them, and a camera that frames the scene ("default") where there is none. Idempotent.
+// Completes a scene after loading or building: flat normals where a primitive has none, tangents where a
+// normal map needs them, `origin` from the bounds over the timeline, and a camera that frames the scene
+// ("default") where there is none. Idempotent; call it again after a change of rootTransform. Throws
+// InputError where the transforms take a vertex out of the range of float.
 void finishScene(Scene& scene);
 
 // Loads "builtin:NAME", "builtin:NAME?detail=0.1" or a .gltf/.glb file. A relative file name is relative to

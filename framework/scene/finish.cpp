@@ -1,0 +1,155 @@
+// Completing a scene: flat normals, tangents, origin, a default camera.
+#include "core/error.h"
+#include "scene/geometry.h"
+#include "scene/scene.h"
+#include "scene/timeline_bounds.h"
+#include <cmath>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace kestrel {
+namespace {
+
+template<class T>
+void unweld(std::vector<T>& attribute, const std::vector<std::uint32_t>& indices) {
+    if (attribute.empty()) return;
+    std::vector<T> corners;
+    corners.reserve(indices.size());
+    for (const std::uint32_t index : indices) corners.push_back(attribute[index]);
+    attribute = std::move(corners);
+}
+
+// Gives each triangle three vertices of its own.
+void unweldPrimitive(Primitive& primitive) {
+    const std::vector<std::uint32_t> indices = std::move(primitive.indices);
+    unweld(primitive.positions, indices);
+    unweld(primitive.texCoords, indices);
+    unweld(primitive.texCoords1, indices);
+    unweld(primitive.colours, indices);
+    unweld(primitive.joints, indices);
+    unweld(primitive.weights, indices);
+    for (Primitive::MorphTarget& target : primitive.targets) {
+        unweld(target.positions, indices);
+        // Displacements of normals that the file does not have displace nothing.
+        target.normals.clear();
+        target.tangents.clear();
+    }
+    primitive.indices.resize(indices.size());
+    for (size_t i = 0; i < indices.size(); ++i) primitive.indices[i] = static_cast<std::uint32_t>(i);
+}
+
+void makeFlatNormals(Primitive& primitive) {
+    unweldPrimitive(primitive);
+    primitive.flatNormals = true;
+    primitive.tangents.clear();
+    primitive.normals.assign(primitive.positions.size(), glm::vec3(0, 0, 1));
+    for (size_t i = 0; i + 2 < primitive.positions.size(); i += 3) {
+        const glm::dvec3 a(primitive.positions[i]);
+        const glm::dvec3 cross = glm::cross(glm::dvec3(primitive.positions[i + 1]) - a,
+                                            glm::dvec3(primitive.positions[i + 2]) - a);
+        const double length = std::sqrt(glm::dot(cross, cross));
+        for (size_t k = 0; k < 3 && length > 0; ++k) primitive.normals[i + k] = glm::vec3(cross / length);
+    }
+}
+
+bool needsTangents(const Scene& scene, const Primitive& primitive) {
+    return primitive.tangents.empty() && primitive.material >= 0 &&
+           scene.materials[static_cast<size_t>(primitive.material)].normalTexture.present();
+}
+
+// A unit vector at a right angle to `normal`, which is unit.
+glm::dvec3 anyTangent(const glm::dvec3& normal) {
+    const glm::dvec3 axis = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    return glm::normalize(glm::cross(axis, normal));
+}
+
+// Tangents along the texture's u direction, summed over a vertex's triangles and made orthogonal to the
+// normal (E. Lengyel, "Computing Tangent Space Basis Vectors for an Arbitrary Mesh", 2001).
+void makeTangents(Primitive& primitive, int texCoordSet) {
+    const std::vector<glm::vec2>& uv = texCoordSet == 1 ? primitive.texCoords1 : primitive.texCoords;
+    const size_t count = primitive.positions.size();
+    std::vector<glm::dvec3> alongU(count, glm::dvec3(0)), alongV(count, glm::dvec3(0));
+    for (size_t i = 0; i + 2 < primitive.indices.size() && !uv.empty(); i += 3) {
+        const std::uint32_t* corner = primitive.indices.data() + i;
+        const glm::dvec3 origin(primitive.positions[corner[0]]);
+        const glm::dvec3 e1 = glm::dvec3(primitive.positions[corner[1]]) - origin;
+        const glm::dvec3 e2 = glm::dvec3(primitive.positions[corner[2]]) - origin;
+        const glm::dvec2 d1 = glm::dvec2(uv[corner[1]]) - glm::dvec2(uv[corner[0]]);
+        const glm::dvec2 d2 = glm::dvec2(uv[corner[2]]) - glm::dvec2(uv[corner[0]]);
+        const double determinant = d1.x * d2.y - d2.x * d1.y;
+        if (determinant == 0) continue;
+        const glm::dvec3 u = (e1 * d2.y - e2 * d1.y) / determinant;
+        const glm::dvec3 v = (e2 * d1.x - e1 * d2.x) / determinant;
+        for (int k = 0; k < 3; ++k) {
+            alongU[corner[k]] += u;
+            alongV[corner[k]] += v;
+        }
+    }
+    primitive.tangents.resize(count);
+    for (size_t i = 0; i < count; ++i) {
+        const glm::dvec3 normal(primitive.normals[i]);
+        const glm::dvec3 flat = alongU[i] - glm::dot(alongU[i], normal) * normal;
+        const double length = std::sqrt(glm::dot(flat, flat));
+        const bool usable = length > 0 && std::isfinite(length);
+        const glm::dvec3 tangent = usable ? flat / length : anyTangent(normal);
+        const double handedness = glm::dot(glm::cross(normal, tangent), alongV[i]) < 0 ? -1 : 1;
+        primitive.tangents[i] = glm::vec4(glm::vec3(tangent), static_cast<float>(handedness));
+    }
+}
+
+void completePrimitives(Scene& scene) {
+    for (Mesh& mesh : scene.meshes)
+        for (Primitive& primitive : mesh.primitives) {
+            if (primitive.normals.empty() && !primitive.positions.empty()) makeFlatNormals(primitive);
+            if (needsTangents(scene, primitive))
+                makeTangents(primitive,
+                             scene.materials[static_cast<size_t>(primitive.material)].normalTexture.texCoord);
+        }
+}
+
+// A camera to the front, the right and above that sees the whole bounding sphere.
+void addDefaultCamera(Scene& scene) {
+    constexpr double fov = 0.8;
+    const TimelineBounds bounds = timelineBounds(scene, glm::dmat4(1));
+    const double radius = bounds.radius > 0 ? bounds.radius : 1;
+    // Wide frames are cut at top and bottom first; the sphere touches no edge of a frame at least as wide as
+    // high.
+    const double distance = 1.05 * radius / std::sin(0.5 * fov);
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.6, 0.45, 1.0));
+    const glm::dvec3 centre = bounds.centre(), eye = centre + distance * direction;
+    const glm::dmat4 view = glm::lookAt(eye, centre, glm::dvec3(0, 1, 0));
+    Node node;
+    node.name = "default";
+    node.translation = eye;
+    node.rotation = glm::quat_cast(glm::transpose(glm::dmat3(view)));
+    node.camera = static_cast<int>(scene.cameras.size());
+    Camera camera;
+    camera.name = "default";
+    camera.verticalFov = static_cast<float>(fov);
+    // A little more than the sphere, so that rounding cuts nothing off.
+    camera.nearPlane = static_cast<float>(0.5 * (distance - radius));
+    camera.farPlane = static_cast<float>(2 * (distance + radius));
+    camera.node = static_cast<int>(scene.nodes.size());
+    scene.roots.push_back(camera.node);
+    scene.nodes.push_back(std::move(node));
+    scene.cameras.push_back(std::move(camera));
+}
+
+} // namespace
+
+void finishScene(Scene& scene) {
+    completePrimitives(scene);
+    if (scene.cameras.empty()) addDefaultCamera(scene);
+    const TimelineBounds bounds = timelineBounds(scene, scene.rootTransform);
+    // Squared lengths of render-space vectors stay inside float.
+    constexpr double largest = 1e18;
+    if (!bounds.empty && !(bounds.radius < largest))
+        throw InputError(
+            Location{scene.source},
+            fmt::format("the transforms of the nodes take vertices {:g} away from each other; at "
+                        "most {:g} is drawn",
+                        bounds.radius, largest));
+    scene.origin = bounds.empty ? glm::dvec3(scene.rootTransform[3]) : bounds.centre();
+}
+
+} // namespace kestrel

@@ -1,0 +1,136 @@
+// Cameras and lights at one time.
+#include "core/check.h"
+#include "core/error.h"
+#include "scene/animation.h"
+#include "scene/geometry.h"
+#include <cmath>
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+// A right-handed orthonormal frame: the axes of a node without scale, shear and mirroring.
+struct Frame {
+    glm::dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, position{0};
+};
+
+bool normalizeTo(glm::dvec3& out, const glm::dvec3& v) {
+    const double length = std::sqrt(glm::dot(v, v));
+    if (!(length > 0) || !std::isfinite(length)) return false;
+    out = v / length;
+    return true;
+}
+
+// z is kept in direction, then y; a node squeezed to nothing has the axes of the world.
+Frame frameOf(const glm::dmat4& world) {
+    Frame frame;
+    frame.position = glm::dvec3(world[3]);
+    glm::dvec3 z, y;
+    if (!normalizeTo(z, glm::dvec3(world[2]))) return frame;
+    glm::dvec3 up;
+    if (!normalizeTo(up, glm::dvec3(world[1]))) return frame;
+    if (!normalizeTo(y, up - glm::dot(up, z) * z)) return frame;
+    frame.z = z;
+    frame.y = y;
+    frame.x = glm::cross(y, z);
+    return frame;
+}
+
+Frame frameOfNode(const Scene& scene, const Pose& pose, int node) {
+    return frameOf(node < 0 ? scene.rootTransform : pose.worlds[static_cast<size_t>(node)]);
+}
+
+// The factor by which rootTransform scales lengths.
+double rootScale(const Scene& scene) {
+    const double determinant = std::abs(glm::determinant(glm::dmat3(scene.rootTransform)));
+    return determinant == 1 ? 1 : std::cbrt(determinant);
+}
+
+} // namespace
+
+CameraState cameraAt(const Scene& scene, int camera, double time) {
+    KESTREL_CHECK_LE(0, camera);
+    KESTREL_CHECK_LT(static_cast<size_t>(camera), scene.cameras.size());
+    const Camera& source = scene.cameras[static_cast<size_t>(camera)];
+    const Frame frame = frameOfNode(scene, poseAt(scene, time), source.node);
+    const glm::dvec3 position = frame.position - scene.origin;
+    const float scale = static_cast<float>(rootScale(scene));
+
+    CameraState state;
+    state.position = glm::vec3(position);
+    const glm::dvec3 axes[] = {frame.x, frame.y, frame.z};
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            state.view[column][row] = static_cast<float>(axes[row][column]);
+        state.view[3][row] = static_cast<float>(-glm::dot(axes[row], position));
+    }
+    state.orthographic = source.orthographic;
+    state.verticalFov = source.verticalFov;
+    state.halfHeight = source.halfHeight * scale;
+    state.aspect = source.aspect;
+    state.nearPlane = source.nearPlane * scale;
+    state.farPlane = source.farPlane * scale;
+    return state;
+}
+
+glm::mat4 CameraState::projection(float frameAspect) const {
+    const double ratio = double(aspect > 0 ? aspect : frameAspect);
+    const double n = double(nearPlane), f = double(farPlane);
+    glm::dmat4 matrix(0);
+    if (orthographic) {
+        matrix[0][0] = 1 / (ratio * double(halfHeight));
+        matrix[1][1] = 1 / double(halfHeight);
+        // depth = (f - distance) / (f - n), distance = -z
+        matrix[2][2] = 1 / (f - n);
+        matrix[3][2] = f / (f - n);
+        matrix[3][3] = 1;
+        return glm::mat4(matrix);
+    }
+    const double cotangent = 1 / std::tan(0.5 * double(verticalFov));
+    matrix[0][0] = cotangent / ratio;
+    matrix[1][1] = cotangent;
+    matrix[2][3] = -1;
+    if (farPlane <= 0) { // infinite: depth = n / distance
+        matrix[3][2] = n;
+    } else { // depth = n (f - distance) / ((f - n) distance)
+        matrix[2][2] = n / (f - n);
+        matrix[3][2] = n * f / (f - n);
+    }
+    return glm::mat4(matrix);
+}
+
+std::vector<LightState> lightsAt(const Scene& scene, double time) {
+    const Pose pose = poseAt(scene, time);
+    const float scale = static_cast<float>(rootScale(scene));
+    std::vector<LightState> states;
+    states.reserve(scene.lights.size());
+    for (const Light& light : scene.lights) {
+        const Frame frame = frameOfNode(scene, pose, light.node);
+        LightState state;
+        state.kind = light.kind;
+        state.position = glm::vec3(frame.position - scene.origin);
+        state.direction = glm::vec3(-frame.z);
+        state.tangent = glm::vec3(frame.x);
+        state.bitangent = glm::vec3(frame.y);
+        const bool candela = light.kind == LightKind::Point || light.kind == LightKind::Spot;
+        state.intensity = light.colour * light.intensity * (candela ? scale * scale : 1.0f);
+        state.range = light.range * scale;
+        state.innerCone = light.innerCone;
+        state.outerCone = light.outerCone;
+        state.halfSize = light.halfSize * scale;
+        states.push_back(state);
+    }
+    return states;
+}
+
+int cameraIndex(const Scene& scene, const std::string& name) {
+    std::vector<std::string> names;
+    for (size_t i = 0; i < scene.cameras.size(); ++i) {
+        if (name.empty() || scene.cameras[i].name == name) return static_cast<int>(i);
+        names.push_back(scene.cameras[i].name);
+    }
+    throw InputError(Location{scene.source},
+                     fmt::format("the scene has no camera '{}'{}", name, didYouMean(name, names)));
+}
+
+} // namespace kestrel
