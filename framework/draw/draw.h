@@ -18,7 +18,7 @@ struct DrawState {
     bool colourWrite = true;
     bool logicOr = false; // glLogicOp(GL_OR) on integer attachments
     bool depthClamp = false;
-    std::optional<glm::uvec2> viewport; // without attachments: the size of the rasterized area
+    std::optional<glm::uvec2> viewport = {}; // without attachments: the size of the rasterized area
 
     static DrawState overwrite() {
         return {.depth = Compare::Always, .depthWrite = false, .cull = Cull::None};

@@ -17,6 +17,7 @@ struct PortInfo {
     PortDirection direction = PortDirection::Input;
     bool optional = false; // of an input
     std::string sentence;
+    bool display = false; // an output that holds display-referred values: written to 8-bit files as it is
 };
 
 enum class PropertyKind : std::uint8_t { Bool, Int, Float, Choice, Text, Vector };
@@ -84,6 +85,12 @@ public:
     }
     Describe& output(std::string name, PortKind kind, std::string sentence) {
         return port(std::move(name), kind, PortDirection::Output, false, std::move(sentence));
+    }
+    // A texture with display-referred values (sRGB code values).
+    Describe& displayOutput(std::string name, std::string sentence) {
+        port(std::move(name), PortKind::Texture, PortDirection::Output, false, std::move(sentence));
+        type_.ports.back().display = true;
+        return *this;
     }
     Describe& internal(std::string name, PortKind kind, std::string sentence) {
         return port(std::move(name), kind, PortDirection::Internal, false, std::move(sentence));
@@ -183,7 +190,7 @@ public:
 private:
     Describe& port(std::string name, PortKind kind, PortDirection direction, bool optional,
                    std::string sentence) {
-        type_.ports.push_back({std::move(name), kind, direction, optional, std::move(sentence)});
+        type_.ports.push_back({std::move(name), kind, direction, optional, std::move(sentence), false});
         return *this;
     }
     Describe& property(PropertyInfo info) {
