@@ -1,0 +1,96 @@
+#include "ray_ambient_occlusion.h"
+#include "execute/commands.h"
+#include <algorithm>
+#include <charconv>
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+// A step traces at most this many rays a pixel: the rays' loop around a tracer's own loop must stay below the
+// trips after which llvmpipe silently stops a loop nest (65,535).
+constexpr int raysPerStep = 16;
+
+} // namespace
+
+PassType RayAmbientOcclusion::type() {
+    return Describe<RayAmbientOcclusion>("RayAmbientOcclusion",
+                                         "Ambient occlusion by rays through any tracer")
+        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .input("tracer", PortKind::Tracer, "Who answers the visibility queries")
+        .output("visibility", PortKind::Texture,
+                "Share of the cosine-weighted hemisphere that is open; 1 where nothing is")
+        .output("weight", PortKind::Texture,
+                "How much this frame's visibility counts in a mean over frames (for snapping tracers); 1 "
+                "where nothing is")
+        .number("rays", &RayAmbientOcclusion::rays, 1, 256, "rays", "Rays a pixel and frame")
+        .number("distance", &RayAmbientOcclusion::distance, 0, 1e9, "scene units",
+                "How far occluders count; 0: any distance")
+        .flag("snap", &RayAmbientOcclusion::snap, "Bears that a tracer replaces directions by nearby ones")
+        .choice("estimator", &RayAmbientOcclusion::estimator, {"paper", "cosine_ratio"},
+                "How replaced directions count: all alike, or by their cosine over the mean cosine of those "
+                "they stand for");
+}
+
+Declaration RayAmbientOcclusion::declare(const World&, const Inputs& inputs, const Demand& demand) const {
+    Declaration declaration;
+    const Extent extent = inputs.connected("depth") ? inputs["depth"].desc.extent : Extent{};
+    const View view = inputs.connected("depth") ? inputs["depth"].desc.view : View{};
+    if (inputs["normal"].desc.extent != extent)
+        declaration.problems.push_back(
+            {"normal", fmt::format("is {} but depth is {}", describe(inputs["normal"].desc),
+                                   describe(inputs["depth"].desc))});
+    const bool snaps = snap && (inputs["tracer"].desc.gives & (gives::Snaps | gives::AlwaysSnaps)) != 0;
+    const bool background = inputs["depth"].constant == glm::vec4(0);
+    const bool weighted = demand.reads("weight");
+
+    Output visibility{.port = "visibility", .desc = Desc::texture2D(Format::R32F, extent, view)};
+    Output weight{.port = "weight", .desc = Desc::texture2D(Format::R32F, extent, view)};
+    if (background) visibility.constant = glm::vec4(1);
+    if (background || !snaps) weight.constant = glm::vec4(1);
+    declaration.outputs.push_back(visibility);
+    if (weighted) declaration.outputs.push_back(weight);
+    if (background) {
+        declaration.leftOut.push_back({"tracing", "the depth is empty everywhere"});
+        return declaration;
+    }
+    if (weighted && !snaps)
+        declaration.leftOut.push_back({"weight", "the tracer traces the directions that were asked for"});
+
+    const int count = (rays + raysPerStep - 1) / raysPerStep;
+    for (int i = 0; i < count; ++i) {
+        Step step{.name = fmt::format("trace{}", i),
+                  .shaders = {"ambient_occlusion/ray_ambient_occlusion.comp"},
+                  .defines = {{"RAYS", std::to_string(std::min(raysPerStep, rays - i * raysPerStep))},
+                              {"FIRST_RAY", std::to_string(i * raysPerStep)},
+                              {"TOTAL_RAYS", std::to_string(rays)}},
+                  .uses = {{.port = "depth", .access = Access::Fetch},
+                           {.port = "normal", .access = Access::Image},
+                           {.port = "visibility", .access = Access::Image, .write = true}},
+                  .modules = {{"tracer", takes::AnyHit | (snap ? takes::BearsSnap : 0)}},
+                  .group = "tracing"};
+        if (i > 0) step.defines["CONTINUES"] = "1";
+        if (i + 1 == count) step.defines["ENDS"] = "1";
+        if (snaps) {
+            step.defines["SNAPS"] = "1";
+            if (estimator == Estimator::CosineRatio) step.defines["COSINE_RATIO"] = "1";
+            // Between steps the sum of weights must live somewhere, also if nobody else reads it.
+            if (weighted || count > 1) {
+                step.defines["WEIGHT"] = "1";
+                step.uses.push_back({.port = "weight", .access = Access::Image, .write = true});
+                if (!weighted && i == 0) declaration.outputs.push_back(weight);
+            }
+        }
+        declaration.steps.push_back(std::move(step));
+    }
+    declaration.depends = Causes::Frame;
+    return declaration;
+}
+
+void RayAmbientOcclusion::execute(const Step&, Commands& commands) {
+    commands.set("maximumDistance", distance);
+    commands.dispatchOver(commands.desc("visibility").extent);
+}
+
+} // namespace kestrel

@@ -1,0 +1,10 @@
+#include "plugin/plugin.h"
+#include "debug_view.h"
+#include "error_measure.h"
+#include "tone_map.h"
+
+KESTREL_PLUGIN {
+    registry.add(kestrel::DebugView::type());
+    registry.add(kestrel::ErrorMeasure::type());
+    registry.add(kestrel::ToneMap::type());
+}

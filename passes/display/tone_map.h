@@ -1,0 +1,21 @@
+// From scene-referred light to display-referred values.
+#pragma once
+#include "graph/registry.h"
+
+namespace kestrel {
+
+class ToneMap final : public Pass {
+public:
+    enum class Operator { Linear, Reinhard, Aces };
+
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+    void execute(const Step& step, Commands& commands) override;
+
+    Operator curve = Operator::Aces;
+    float exposure = 0;
+    bool encode = true;
+};
+
+} // namespace kestrel

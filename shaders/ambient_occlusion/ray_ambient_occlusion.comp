@@ -1,0 +1,73 @@
+// RAYS any-hit queries a pixel over the cosine-weighted hemisphere (ROMA paper, equation 1).
+//
+// A ray is sampled with density cosine / pi, so an unreplaced direction counts 1. A snapping tracer replaces the ray by
+// the candidate of the stratum that it fell into, and says with `weight` how much that candidate counts: its cosine over
+// the mean cosine of the stratum, 0 below the horizon. COSINE_RATIO forms sum(w V) / sum(w); the paper's estimator
+// counts every candidate above the horizon alike. Both are ratios, so an open plane gives 1 exactly; the first is free
+// of the correlation between cosine and visibility within a stratum (a bias of the second that grows with the stratum).
+#include "lib/frame.glsl"
+#include "lib/view.glsl"
+#include "lib/sampling.glsl"
+#include "shared/random.h"
+#include "lib/tracer.glsl"
+#include <port:tracer>
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+uniform sampler2D depth;
+layout(rgba16f) uniform readonly image2D normal;
+layout(r32f) uniform image2D visibility;
+#ifdef WEIGHT
+layout(r32f) uniform image2D weight;
+#endif
+layout(std140) uniform DepthView { ViewData depthView; };
+uniform float maximumDistance; // 0: infinite
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(visibility)))) return;
+
+    float z = texelFetch(depth, pixel, 0).r;
+    vec3 n = imageLoad(normal, pixel).xyz;
+    bool background = z == 0.0 || dot(n, n) == 0.0;
+    n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
+    vec3 origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
+    uint seed = pixelSeed(uvec2(pixel), randomRayDirection, frame.seed);
+
+    float open = 0.0, sum = 0.0;
+    for (uint i = 0u; i < uint(RAYS); ++i) {
+        vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);
+        Ray ray = surfaceRay(origin, n, cosineHemisphere(u, n));
+        if (maximumDistance > 0.0) ray.tMax = maximumDistance;
+        tracer_aim(ray);
+#ifdef COSINE_RATIO
+        float w = ray.weight;
+#else
+        float w = ray.weight > 0.0 ? 1.0 : 0.0;
+#endif
+        if (!tracer_anyHit(ray)) open += w;
+        sum += w;
+    }
+#ifdef CONTINUES
+    // Between steps the images hold sums.
+    open += imageLoad(visibility, pixel).r;
+#ifdef WEIGHT
+    sum += imageLoad(weight, pixel).r;
+#else
+    sum += float(FIRST_RAY);
+#endif
+#endif
+#ifdef ENDS
+    // Where no candidate stood above the horizon nothing is known of this frame: weight 0.
+    float share = sum > 0.0 ? open / sum : 1.0;
+    imageStore(visibility, pixel, vec4(background ? 1.0 : share));
+#ifdef WEIGHT
+    imageStore(weight, pixel, vec4(background ? 1.0 : sum / float(TOTAL_RAYS)));
+#endif
+#else
+    imageStore(visibility, pixel, vec4(open));
+#ifdef WEIGHT
+    imageStore(weight, pixel, vec4(sum));
+#endif
+#endif
+}
