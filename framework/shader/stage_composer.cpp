@@ -163,12 +163,12 @@ bool StageComposer::takeDirective(OpenFile& file, const ShaderLine& line, const 
         takeInclude(file, line, directive.rest);
         return true;
     }
-    if (active(file) == Truth::No) return false;
-    if (name == "define" || name == "undef") return !takeMacro(file, line, directive);
     if (name == "extension") {
         takeExtension(file, line, directive);
         return true;
     }
+    if (active(file) == Truth::No) return false;
+    if (name == "define" || name == "undef") return !takeMacro(file, line, directive);
     if (name == "version" || name == "line") {
         problem(file, line.number,
                 fmt::format("#{} is written by composition: remove it from the file", name));
@@ -318,7 +318,9 @@ void StageComposer::switchScope(const Scope& from, const Scope& to) {
 }
 
 void StageComposer::takeExtension(OpenFile& file, const ShaderLine& line, const Directive& directive) {
+    // Blank too where it is not compiled: what is left in the text is what the program really asks for.
     appendBlank(line);
+    if (active(file) == Truth::No) return;
     if (active(file) == Truth::Unknown) {
         problem(file, line.number,
                 "#extension stands where the program's defines do not decide whether it is compiled");
