@@ -1,0 +1,90 @@
+#include "scene/bvh_trace.h"
+#include "shared/triangle.h"
+#include <array>
+#include <utility>
+
+namespace kestrel {
+namespace {
+
+// Walks down to every leaf whose box the ray meets before `tMax` (which `leaf` may lower), the nearer child
+// first. `leaf` gets one triangle at a time and returns true to stop.
+template<class Leaf>
+void traverse(const Bvh& bvh, const BvhRay& ray, const float& tMax, Leaf&& leaf) {
+    struct Entry {
+        std::uint32_t reference;
+        float entry;
+    };
+    std::array<Entry, shared::bvhStackSize> stack;
+    std::size_t size = 0;
+    const glm::vec3 inverse = shared::inverseDirection(ray.direction);
+    std::uint32_t reference = 0;
+    for (;;) {
+        bool descend = false;
+        if (shared::bvhIsLeaf(reference)) {
+            const std::uint32_t first = shared::bvhLeafFirst(reference);
+            for (std::uint32_t i = 0; i < shared::bvhLeafCount(reference); ++i)
+                if (leaf(bvh.triangles[first + i])) return;
+        } else {
+            const auto& children = bvh.nodes[reference].children;
+            Entry hit[2];
+            bool met[2];
+            for (int k = 0; k < 2; ++k) {
+                hit[k].reference = children[k].reference;
+                met[k] = shared::intersectBox(ray.origin, inverse, ray.tMin, tMax, children[k].min,
+                                              children[k].max, hit[k].entry);
+            }
+            const int nearer = met[0] && (!met[1] || hit[0].entry <= hit[1].entry) ? 0 : 1;
+            if (met[0] && met[1]) stack[size++] = hit[1 - nearer];
+            descend = met[0] || met[1];
+            reference = hit[nearer].reference;
+        }
+        while (!descend) {
+            if (size == 0) return;
+            --size;
+            reference = stack[size].reference;
+            descend = stack[size].entry <= tMax;
+        }
+    }
+}
+
+std::optional<BvhHit> intersect(const BvhRay& ray, float tMax, const BvhTriangle& triangle) {
+    shared::TriangleHit hit{};
+    if (!shared::intersectTriangle(ray.origin, ray.direction, ray.tMin, tMax, triangle.p0, triangle.p1,
+                                   triangle.p2, hit))
+        return std::nullopt;
+    return BvhHit{hit.t, hit.u, hit.v, triangle.triangle};
+}
+
+} // namespace
+
+std::optional<BvhHit> closestHit(const Bvh& bvh, const BvhRay& ray) {
+    std::optional<BvhHit> best;
+    float tMax = ray.tMax;
+    traverse(bvh, ray, tMax, [&](const BvhTriangle& triangle) {
+        const auto hit = intersect(ray, tMax, triangle);
+        if (hit && (!best || hit->t < best->t || hit->triangle < best->triangle)) {
+            best = hit;
+            tMax = hit->t;
+        }
+        return false;
+    });
+    return best;
+}
+
+bool anyHit(const Bvh& bvh, const BvhRay& ray) {
+    bool found = false;
+    traverse(bvh, ray, ray.tMax, [&](const BvhTriangle& triangle) {
+        found = intersect(ray, ray.tMax, triangle).has_value();
+        return found;
+    });
+    return found;
+}
+
+void allHits(const Bvh& bvh, const BvhRay& ray, const std::function<bool(const BvhHit&)>& visit) {
+    traverse(bvh, ray, ray.tMax, [&](const BvhTriangle& triangle) {
+        const auto hit = intersect(ray, ray.tMax, triangle);
+        return hit && visit(*hit);
+    });
+}
+
+} // namespace kestrel
