@@ -44,8 +44,9 @@ struct ProgramRequest {
     std::map<std::string, ModuleInstance> modules; // by the consumer's port name
 };
 
-// The text of a stage. `sources[F]` is the file that `#line N F` speaks of; `sources[0]` is the head that
-// composition itself writes (version and defines), and `file` the stage's own file.
+// The text of a stage; a driver is given driverText(stage) (problems.h) instead, since Mesa forgets the F.
+// `sources[F]` is the file that `#line N F` speaks of; `sources[0]` is the head that composition itself
+// writes (version and defines), and `file` the stage's own file.
 struct ComposedStage {
     ShaderStage stage = ShaderStage::Vertex;
     std::string text;

@@ -2,6 +2,7 @@
 #include "shader/lines.h"
 #include <algorithm>
 #include <charconv>
+#include <fmt/format.h>
 #include <optional>
 #include <utility>
 
@@ -107,9 +108,24 @@ std::optional<Place> lineDirective(std::string_view line) {
 
 } // namespace
 
+std::string driverText(const ComposedStage& stage) {
+    std::string text;
+    text.reserve(stage.text.size() + stage.text.size() / 16);
+    for (const std::string_view line : linesOf(stage.text)) {
+        if (const std::optional<Place> place = lineDirective(line)) {
+            const int number = place->source * linesPerSource + place->line;
+            text += fmt::format("#line {} {}\n", number, place->source);
+        } else {
+            text += line;
+            text += '\n';
+        }
+    }
+    return text;
+}
+
 std::string composedLine(const ComposedStage& stage, int source, int line) {
-    // The last one counts: what composition writes around an include is counted on from the file's lines,
-    // which follow later.
+    // The last one that is not blank counts: what composition writes around an include is counted on from the
+    // file's lines, which follow later, and a hoisted line leaves a blank one behind.
     std::string_view found;
     Place next{0, 1, 0};
     for (const std::string_view text : linesOf(stage.text)) {
@@ -128,9 +144,13 @@ std::vector<Problem> mapShaderLog(const std::string& log, const ComposedStage& s
     for (const std::string_view text : linesOf(log)) {
         LineReader reader(text);
         Severity severity = readSeverity(reader);
-        const std::optional<Place> place = readPlace(reader);
+        std::optional<Place> place = readPlace(reader);
         if (place && severity == Severity::None) severity = readSeverity(reader);
         if (isSummary(reader.rest())) continue;
+        if (place && place->line > linesPerSource) {
+            place->source = place->line / linesPerSource;
+            place->line %= linesPerSource;
+        }
         const bool known =
             place && place->source >= 0 && place->source < static_cast<int>(stage.sources.size());
         const Location where =

@@ -7,6 +7,12 @@
 
 namespace kestrel {
 
+// The stage's text for a driver's compiler. Mesa reads `#line N F` and then reports every error in source 0,
+// so the line numbers carry the source as well: line N of source F becomes F * linesPerSource + N.
+// mapShaderLog() reads both.
+std::string driverText(const ComposedStage& stage);
+inline constexpr int linesPerSource = 100'000;
+
 // The problems in a compiler's log about one stage: file and line by the stage's sources, then the message
 // followed by the source line (" in: x = y;"). Understands Mesa ("1:12(3): error: ..."), glslang ("ERROR:
 // 1:12: ..."), and NVIDIA

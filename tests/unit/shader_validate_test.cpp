@@ -246,6 +246,21 @@ TEST(MapShaderLog, ReadsEveryCompilersFormat) {
               "x.comp:2: error C1008: undefined variable \"c\" in: void main() {}\n");
 }
 
+TEST(MapShaderLog, ReadsTheSourceFromTheLinesOfDriverText) {
+    const ComposedStage stage = stageOfTwoFiles();
+    EXPECT_EQ(driverText(stage), "#version 460 core\n#define A 1\n#line 100001 1\n#line 200001 2\nfloat a;\n"
+                                 "float b = c;\n#line 100002 1\nvoid main() {}\n");
+    // As Mesa reports it: the source is always 0.
+    EXPECT_EQ(textOf(mapShaderLog("0:200002(11): error: `c' undeclared\n0:100002(1): error: bad\n"
+                                  "0:2(9): error: head\n",
+                                  stage)),
+              "lib/a.glsl:2:11: `c' undeclared in: float b = c;\n"
+              "x.comp:2:1: bad in: void main() {}\n"
+              "(head):2:9: head in: #define A 1\n");
+    EXPECT_EQ(textOf(mapShaderLog("ERROR: 2:200002: 'c' : undeclared\n", stage)),
+              "lib/a.glsl:2: 'c' : undeclared in: float b = c;\n");
+}
+
 TEST(MapShaderLog, KeepsWhatHasNoPlace) {
     const ComposedStage stage = stageOfTwoFiles();
     EXPECT_EQ(textOf(mapShaderLog("error: out of registers.\n9:1(1): error: elsewhere\n", stage)),
