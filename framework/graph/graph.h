@@ -17,6 +17,9 @@ struct PortRef {
     friend auto operator<=>(const PortRef&, const PortRef&) = default;
 };
 
+// "pass.port"; nothing if the text is not of that form.
+std::optional<PortRef> parsePortRef(std::string_view text);
+
 struct GraphPass {
     std::string name, type;
     std::vector<std::pair<std::string, Value>> properties; // those that the file gives, in its order
@@ -29,6 +32,7 @@ struct GraphPass {
 struct GraphEdge {
     PortRef from, to; // an output, an input
     Location where;
+    Location fromWhere = {}, toWhere = {};
 };
 
 struct GraphOutput {
@@ -48,10 +52,18 @@ struct Graph {
     [[nodiscard]] GraphPass* find(std::string_view pass);
 };
 
+// A graph file may have at most so many of each; a text (comment, property) at most so many bytes.
+inline constexpr size_t maxGraphPasses = 10'000, maxGraphEdges = 100'000, maxGraphOutputs = 10'000,
+                        maxGraphText = 65'536;
+
 // Reads the JSON form ("kestrel": 1). Throws InputError with every mistake of form (unknown key, wrong kind,
 // missing key), each with file:line:column. Names are not resolved here (see validate).
 Graph loadGraph(const std::filesystem::path& file);
 Graph parseGraph(std::string_view text, const std::string& file);
+
+// The scene that the file names: "builtin:NAME", or the path of a file in the graph's folder; empty if it
+// names none. Throws InputError if the path is absolute or leaves the folder, also through a symbolic link.
+std::string sceneOf(const Graph& graph);
 
 // The canonical text: keys in fixed order, one line a pass and an edge. parse and save again give the same
 // bytes.

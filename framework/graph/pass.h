@@ -52,6 +52,8 @@ public:
     // The union of what consumers take of a module port.
     [[nodiscard]] Bits takes(std::string_view port) const;
     void add(std::string port, Bits takes = 0);
+    // Whether anything at all is asked for.
+    [[nodiscard]] bool any() const { return all_ || !ports_.empty(); }
     friend bool operator==(const Demand&, const Demand&) = default;
 
 private:

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -18,6 +19,9 @@ struct PortInfo {
     bool optional = false; // of an input
     std::string sentence;
     bool display = false; // an output that holds display-referred values: written to 8-bit files as it is
+    // The range of an output's values, where it is known; `render --check-finite` holds them against it.
+    double minimum = -std::numeric_limits<double>::infinity(),
+           maximum = std::numeric_limits<double>::infinity();
 };
 
 enum class PropertyKind : std::uint8_t { Bool, Int, Float, Choice, Text, Vector };
@@ -48,9 +52,18 @@ struct PassType {
     [[nodiscard]] std::vector<std::string> propertyNames() const;
 };
 
+// What is wrong with `value` as a value of this property (kind, range, choice with its near name): a sentence
+// that begins with "must be". Nothing if it may be set.
+std::optional<std::string> valueMistake(const PropertyInfo& property, const Value& value);
+
+// Names of passes, ports and properties: [a-z][a-z0-9_]*, at most 64 letters, without "__" and not ending in
+// "_": they become file names, debug labels and parts of GLSL names.
+bool isIdentifier(std::string_view name);
+
 class Registry {
 public:
-    // Throws InputError if the name is taken (says by which plugin) or a port or property name occurs twice.
+    // Throws InputError if the name is taken (says by which plugin), a port or property name occurs twice or
+    // is no identifier, or a default is not a legal value of its property.
     void add(PassType type);
     [[nodiscard]] const PassType* find(std::string_view name) const;
     [[nodiscard]] const std::vector<PassType>& types() const { return types_; } // sorted by name
@@ -90,6 +103,12 @@ public:
     Describe& displayOutput(std::string name, std::string sentence) {
         port(std::move(name), PortKind::Texture, PortDirection::Output, false, std::move(sentence));
         type_.ports.back().display = true;
+        return *this;
+    }
+    // The values of the port described last lie within [minimum, maximum].
+    Describe& range(double minimum, double maximum) {
+        type_.ports.back().minimum = minimum;
+        type_.ports.back().maximum = maximum;
         return *this;
     }
     Describe& internal(std::string name, PortKind kind, std::string sentence) {

@@ -38,6 +38,8 @@ enum class Access : std::uint8_t {
     Host        // read back by the CPU
 };
 
+[[nodiscard]] std::string_view accessName(Access access); // "fetch", "image", …
+
 // The causes for which something may change from one frame to the next.
 enum class Causes : std::uint32_t {
     None = 0,

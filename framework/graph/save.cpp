@@ -1,0 +1,70 @@
+// The canonical text of a graph.
+#include "graph/graph.h"
+#include "graph/value_text.h"
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+// Collects `"key": value` members and joins them.
+class Members {
+public:
+    void add(const std::string& key, const std::string& value) {
+        items_.push_back(jsonText(key) + ": " + value);
+    }
+    [[nodiscard]] bool empty() const { return items_.empty(); }
+    [[nodiscard]] std::string inOneLine() const { return fmt::format("{{ {} }}", fmt::join(items_, ", ")); }
+    [[nodiscard]] std::string inLines(const std::string& indent) const {
+        if (items_.empty()) return "{}";
+        return fmt::format("{{\n{0}  {1}\n{0}}}", indent, fmt::join(items_, ",\n  " + indent));
+    }
+
+private:
+    std::vector<std::string> items_;
+};
+
+std::string arrayInLines(const std::vector<std::string>& items) {
+    if (items.empty()) return "[]";
+    return fmt::format("[\n    {}\n  ]", fmt::join(items, ",\n    "));
+}
+
+std::string passText(const GraphPass& pass) {
+    Members members;
+    members.add("type", jsonText(pass.type));
+    Members properties;
+    for (const auto& [name, value] : pass.properties) properties.add(name, jsonText(value));
+    if (!properties.empty()) members.add("properties", properties.inOneLine());
+    if (pass.position)
+        members.add("position", jsonText(Value(std::vector<double>{pass.position->x, pass.position->y})));
+    if (!pass.comment.empty()) members.add("comment", jsonText(pass.comment));
+    return members.inOneLine();
+}
+
+} // namespace
+
+std::string saveGraph(const Graph& graph) {
+    Members root;
+    root.add("kestrel", "1");
+    if (!graph.name.empty()) root.add("name", jsonText(graph.name));
+    if (!graph.comment.empty()) root.add("comment", jsonText(graph.comment));
+    Members scene;
+    if (!graph.sceneSource.empty()) scene.add("source", jsonText(graph.sceneSource));
+    if (!graph.sceneCamera.empty()) scene.add("camera", jsonText(graph.sceneCamera));
+    if (!scene.empty()) root.add("scene", scene.inOneLine());
+
+    Members passes;
+    for (const GraphPass& pass : graph.passes) passes.add(pass.name, passText(pass));
+    root.add("passes", passes.inLines("  "));
+
+    std::vector<std::string> edges;
+    for (const GraphEdge& edge : graph.edges)
+        edges.push_back(fmt::format("[{}, {}]", jsonText(edge.from.text()), jsonText(edge.to.text())));
+    root.add("edges", arrayInLines(edges));
+
+    std::vector<std::string> outputs;
+    for (const GraphOutput& output : graph.outputs) outputs.push_back(jsonText(output.port.text()));
+    root.add("outputs", fmt::format("[{}]", fmt::join(outputs, ", ")));
+    return root.inLines("") + "\n";
+}
+
+} // namespace kestrel

@@ -1,0 +1,113 @@
+#include "graph/types.h"
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+// "4 MiB", "1.5 KiB", "12 bytes": exact where the number is a whole multiple.
+std::string bytesText(std::uint64_t bytes) {
+    constexpr std::array units = {"bytes", "KiB", "MiB", "GiB"};
+    size_t unit = 0;
+    double amount = static_cast<double>(bytes);
+    while (amount >= 1024 && unit + 1 < units.size()) {
+        amount /= 1024;
+        ++unit;
+    }
+    return fmt::format("{:.4g} {}", amount, units[unit]);
+}
+
+} // namespace
+
+std::string_view portKindName(PortKind kind) {
+    constexpr std::array<std::string_view, 6> names = {"texture", "buffer", "tracer",
+                                                       "hits",    "layers", "radiance"};
+    return names.at(static_cast<size_t>(kind));
+}
+
+std::string_view accessName(Access access) {
+    constexpr std::array<std::string_view, 9> names = {
+        "fetch", "image", "storage", "uniform", "attachment", "vertex", "indirect", "copy", "host"};
+    return names.at(static_cast<size_t>(access));
+}
+
+Desc Desc::texture2D(Format format, Extent extent, View view) {
+    Desc desc;
+    desc.format = format;
+    desc.extent = {extent.width, extent.height, 1};
+    desc.view = view;
+    return desc;
+}
+
+Desc Desc::texture3D(Format format, Extent extent, int mips) {
+    Desc desc;
+    desc.kind = ResourceKind::Texture3D;
+    desc.format = format;
+    desc.extent = extent;
+    desc.mips = mips;
+    return desc;
+}
+
+Desc Desc::array2D(Format format, Extent extent) {
+    Desc desc;
+    desc.kind = ResourceKind::Texture2DArray;
+    desc.format = format;
+    desc.extent = extent;
+    return desc;
+}
+
+Desc Desc::buffer(std::uint64_t bytes, Format texel) {
+    Desc desc;
+    desc.kind = ResourceKind::Buffer;
+    desc.format = texel;
+    desc.bytes = bytes;
+    return desc;
+}
+
+Desc Desc::module(Bits gives) {
+    Desc desc;
+    desc.kind = ResourceKind::Module;
+    desc.gives = gives;
+    return desc;
+}
+
+std::uint64_t Desc::totalBytes() const {
+    if (kind == ResourceKind::Module) return 0;
+    if (kind == ResourceKind::Buffer) return bytes;
+    std::uint64_t texels = 0;
+    for (int mip = 0; mip < mips; ++mip) {
+        const auto halved = [mip](std::uint32_t size) {
+            return std::uint64_t{std::max(size >> std::min(mip, 31), 1U)};
+        };
+        const std::uint64_t slices =
+            kind == ResourceKind::Texture3D ? halved(extent.depth) : std::uint64_t{extent.depth};
+        texels += halved(extent.width) * halved(extent.height) * slices;
+    }
+    if (kind == ResourceKind::TextureCube) texels *= 6;
+    return texels * static_cast<std::uint64_t>(formatInfo(format).bytes);
+}
+
+std::string describe(const Desc& desc) {
+    const std::string_view format = formatInfo(desc.format).name;
+    const std::string mips = desc.mips > 1 ? fmt::format(", {} mips", desc.mips) : std::string();
+    const Extent& e = desc.extent;
+    switch (desc.kind) {
+    case ResourceKind::Module:
+        return "module";
+    case ResourceKind::Buffer:
+        return desc.format == Format::None ? fmt::format("buffer {}", bytesText(desc.bytes))
+                                           : fmt::format("{} buffer {}", format, bytesText(desc.bytes));
+    case ResourceKind::Texture2D:
+        return fmt::format("{} {}x{}{}", format, e.width, e.height, mips);
+    case ResourceKind::Texture2DArray:
+        return fmt::format("{} {}x{}, {} layers{}", format, e.width, e.height, e.depth, mips);
+    case ResourceKind::TextureCube:
+        return fmt::format("{} cube {}x{}{}", format, e.width, e.height, mips);
+    case ResourceKind::Texture3D:
+        return fmt::format("{} {}x{}x{}{}", format, e.width, e.height, e.depth, mips);
+    }
+    return "unknown";
+}
+
+} // namespace kestrel
