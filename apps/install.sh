@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Installs the Debian packages of apps/packages.txt that are missing, saying which. Usage: apps/install.sh [test]
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+needs='required|optional'
+[ "${1:-}" = test ] && needs='required|optional|test'
+
+missing=()
+while read -r package need _; do
+    case "$package" in ''|'#'*) continue ;; esac
+    [[ $need =~ ^($needs)$ ]] || continue
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done <"$here/packages.txt"
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+echo "Installing: ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "apps/install.sh: needs root or sudo to install packages" >&2; exit 3; }
+    as_root=(sudo)
+fi
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
