@@ -27,16 +27,30 @@ public:
     virtual ~Context() = default;
 
     virtual void makeCurrent() = 0;
-    // Window only: shows the frame and handles events; false once the user has closed it.
+    // Window only: shows the default framebuffer and handles events; false once the user has closed it.
     virtual bool present() { return true; }
+    // Pixels of the default framebuffer; {0, 0} where there is none.
+    [[nodiscard]] virtual Extent framebufferExtent() const { return {0, 0, 1}; }
+    // Window only: the GLFWwindow.
+    [[nodiscard]] virtual void* window() const { return nullptr; }
 
     [[nodiscard]] const Capabilities& capabilities() const { return capabilities_; }
     [[nodiscard]] const std::string& driver() const { return driver_; } // vendor, version
-    // How many GL errors of high severity the debug output has told since creation; tests expect 0.
+    // How many GL errors of high severity the debug output has told since the program started, of all
+    // contexts; tests expect 0. Compiler messages and allocations that fail do not count: they are thrown.
     [[nodiscard]] static std::uint64_t severeErrors();
 
 protected:
-    void finishCreation(void* (*getProcAddress)(const char*), bool debug);
+    using GetProcAddress = void (*(*)(const char*))();
+    // For the makeCurrent() of each backend: entry points differ between EGL, OSMesa and the window.
+    void loadFunctions() const;
+    // With the new context current: functions, requirements, capabilities, debug output, fixed state.
+    void finishCreation(GetProcAddress getProcAddress, bool debug);
+
+private:
+    GetProcAddress getProcAddress_ = nullptr;
+
+protected:
     Capabilities capabilities_;
     std::string driver_;
 };

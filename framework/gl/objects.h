@@ -45,18 +45,22 @@ void deleteFramebuffer(Name name);
 void deleteVertexArray(Name name);
 void deleteSampler(Name name);
 
+// Bytes on the GPU, zero at first.
 class Buffer {
 public:
     Buffer() = default;
+    // Throws MachineError with the size if there is not so much memory. Zero bytes are allowed.
     Buffer(std::uint64_t bytes, const std::string& label);
     [[nodiscard]] Name name() const { return handle_.get(); }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+    explicit operator bool() const { return bool(handle_); }
+    // The range must lie inside.
     void upload(std::span<const std::byte> data, std::uint64_t offset = 0);
     [[nodiscard]] std::vector<std::byte> download(std::uint64_t offset = 0,
                                                   std::uint64_t bytes = UINT64_MAX) const;
     void clear(std::uint32_t word = 0); // every 32-bit word
     // The buffer as a GL_TEXTURE_BUFFER of that texel format (made once a format): samplerBuffer,
-    // imageBuffer.
+    // imageBuffer. Throws MachineError if it holds more texels than the device can address.
     [[nodiscard]] Name texelView(Format format) const;
 
 private:
@@ -65,25 +69,97 @@ private:
     mutable std::vector<std::pair<Format, Handle<deleteTexture>>> views_;
 };
 
+// Texels on the GPU, zero at first.
 class Texture {
 public:
     Texture() = default;
-    // Desc of any texture kind.
+    // Desc of any texture kind; extent.depth is the depth of a 3D texture or the layers of an array. Throws
+    // MachineError if the device has not such a size (naming need and limit) or not so much memory.
     Texture(const Desc& desc, const std::string& label);
     [[nodiscard]] Name name() const { return handle_.get(); }
     [[nodiscard]] const Desc& desc() const { return desc_; }
+    explicit operator bool() const { return bool(handle_); }
+    // Differs for all textures ever made, where GL uses a name again after deletion.
+    [[nodiscard]] std::uint64_t serial() const { return serial_; }
+    // Layers of level `mip`: slices of a 3D texture, 6 of a cube, 1 of a plain one.
+    [[nodiscard]] std::uint32_t layers(int mip = 0) const;
+    [[nodiscard]] Extent extentOf(int mip) const; // of one level; depth as in desc()
+    // One layer (3D: all slices if layer is -1). `bytes` must be what the format needs.
+    void upload(std::span<const std::byte> bytes, int layer = 0, int mip = 0);
     void upload(const void* data, int layer = 0, int mip = 0); // tightly packed texels of the format
+    // All levels and layers. Integer formats take the value rounded towards zero and clamped to their range.
     void clear(const glm::vec4& value);
     void generateMips();
     // Texels of one layer (3D: all slices if layer is -1), tightly packed.
     [[nodiscard]] std::vector<std::byte> download(int layer = 0, int mip = 0) const;
-    // As floats, row 0 at the top of the image (GL's first row is the bottom one).
+    // As floats with the format's channels, row 0 at the top of the image (GL's first row is the bottom one).
     [[nodiscard]] Image downloadImage(int layer = 0, int mip = 0) const;
-    void uploadImage(const Image& image);
+    // Of the level's size; channels are converted (convertChannels), integers rounded and clamped.
+    void uploadImage(const Image& image, int layer = 0, int mip = 0);
 
 private:
     Handle<deleteTexture> handle_;
     Desc desc_;
+    std::uint64_t serial_ = 0;
+};
+
+enum class Wrapping : std::uint8_t { ClampToEdge, Repeat, MirroredRepeat };
+
+// How a texture is read through a sampler.
+struct SamplerState {
+    bool linear = false; // otherwise nearest
+    bool mips = false;   // linear: between levels too; otherwise level 0 alone
+    Wrapping wrapping = Wrapping::ClampToEdge;
+    friend auto operator<=>(const SamplerState&, const SamplerState&) = default;
+};
+
+// Samplers by state, made once.
+class SamplerCache {
+public:
+    Name get(const SamplerState& state);
+
+private:
+    std::vector<std::pair<SamplerState, Handle<deleteSampler>>> samplers_;
+};
+
+// A vertex array. Without attributes it serves draws by gl_VertexID.
+class VertexArray {
+public:
+    VertexArray() = default;
+    explicit VertexArray(const std::string& label);
+    [[nodiscard]] Name name() const { return handle_.get(); }
+    explicit operator bool() const { return bool(handle_); }
+    // 32-bit indices.
+    void setIndices(const Buffer& buffer);
+    // `components` floats at `location`, `offset` bytes into each element of `stride` bytes.
+    void setAttribute(unsigned int location, const Buffer& buffer, int components, std::uint32_t stride,
+                      std::uint32_t offset);
+
+private:
+    Handle<deleteVertexArray> handle_;
+};
+
+// One attachment: a level, and a layer or all of them (-1: gl_Layer chooses; of a plain texture: itself).
+struct Attachment {
+    const Texture* texture = nullptr;
+    int mip = 0;
+    int layer = -1;
+};
+
+// Framebuffers by their attachments, made once. They keep their textures' memory, so clear() must be called
+// when textures are given back.
+class FramebufferCache {
+public:
+    // Colours are out locations 0, 1, …; a null texture leaves its location empty. Without any attachment,
+    // `extent` is the rasterized size (depth: layers, 1: not layered). Throws MachineError naming the formats
+    // if the driver cannot draw to this combination.
+    Name get(const std::vector<Attachment>& colours, const Attachment& depth, const Extent& extent);
+    void clear() { framebuffers_.clear(); }
+    [[nodiscard]] std::size_t size() const { return framebuffers_.size(); }
+
+private:
+    using Key = std::vector<std::uint64_t>;
+    std::vector<std::pair<Key, Handle<deleteFramebuffer>>> framebuffers_;
 };
 
 // GL enums of a format: internal format, pixel format, component type.
@@ -92,6 +168,10 @@ struct GlFormat {
 };
 GlFormat glFormat(Format format);
 
+// Values as a format's integers: rounded towards zero, clamped to the format's range.
+std::int64_t toFormatInteger(Format format, float value);
+
+// Whole contents; both must have the same description.
 void copyResource(const Texture& from, const Texture& to);
 void copyResource(const Buffer& from, const Buffer& to);
 

@@ -1,0 +1,101 @@
+#include "core/error.h"
+#include "gl/context_backends.h"
+#ifdef KESTREL_HAS_WINDOW
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#endif
+
+namespace kestrel::gl {
+
+#ifndef KESTREL_HAS_WINDOW
+
+std::unique_ptr<Context> createWindowContext(const ContextOptions&) {
+    throw MachineError(
+        "this build has no window: install libglfw3-dev and build again, or use --backend egl");
+}
+
+#else
+
+namespace {
+
+std::string glfwReason() {
+    const char* text = nullptr;
+    glfwGetError(&text);
+    return text == nullptr ? "no reason given" : text;
+}
+
+class WindowContext final : public Context {
+public:
+    explicit WindowContext(const ContextOptions& options) {
+        if (glfwInit() == GLFW_FALSE)
+            throw MachineError(fmt::format(
+                "no window system ({}): set DISPLAY, or use --backend egl to render without a window",
+                glfwReason()));
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 6);
+        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+#ifdef KESTREL_DEBUG
+        glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+#endif
+        window_ = glfwCreateWindow(static_cast<int>(options.windowSize.width),
+                                   static_cast<int>(options.windowSize.height), options.title.c_str(),
+                                   nullptr, nullptr);
+        if (window_ == nullptr) {
+            const std::string reason = glfwReason();
+            glfwTerminate();
+            throw MachineError(fmt::format(
+                "no window with an OpenGL 4.6 core context ({}): install libgl1-mesa-dri", reason));
+        }
+        try {
+            glfwMakeContextCurrent(window_);
+            finishCreation(glfwGetProcAddress, options.debug);
+            ready_ = true;
+        } catch (...) {
+            close();
+            throw;
+        }
+    }
+    ~WindowContext() override { close(); }
+    WindowContext(const WindowContext&) = delete;
+    WindowContext& operator=(const WindowContext&) = delete;
+
+    void makeCurrent() override {
+        glfwMakeContextCurrent(window_);
+        if (ready_) loadFunctions();
+    }
+
+    bool present() override {
+        glfwSwapBuffers(window_);
+        glfwPollEvents();
+        return glfwWindowShouldClose(window_) == GLFW_FALSE;
+    }
+
+    [[nodiscard]] Extent framebufferExtent() const override {
+        int width = 0;
+        int height = 0;
+        glfwGetFramebufferSize(window_, &width, &height);
+        return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 1};
+    }
+
+    [[nodiscard]] void* window() const override { return window_; }
+
+private:
+    void close() {
+        glfwDestroyWindow(window_);
+        glfwTerminate();
+    }
+
+    GLFWwindow* window_ = nullptr;
+    bool ready_ = false;
+};
+
+} // namespace
+
+std::unique_ptr<Context> createWindowContext(const ContextOptions& options) {
+    return std::make_unique<WindowContext>(options);
+}
+
+#endif
+
+} // namespace kestrel::gl
