@@ -1,0 +1,44 @@
+#include "hemisphere_rays.h"
+#include "execute/commands.h"
+#include "shared/ray.h"
+#include <fmt/format.h>
+
+namespace kestrel {
+
+PassType HemisphereRays::type() {
+    return Describe<HemisphereRays>("HemisphereRays",
+                                    "One ray a pixel over the cosine-weighted hemisphere, as a buffer")
+        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .output("rays", PortKind::Buffer, "One record a pixel in rows from the bottom (shared/ray.h)")
+        .number("distance", &HemisphereRays::distance, 0, 1e9, "scene units",
+                "Length of the rays; 0: unbounded");
+}
+
+Declaration HemisphereRays::declare(const World&, const Inputs& inputs, const Demand&) const {
+    Declaration declaration;
+    const Extent extent = inputs["depth"].desc.extent;
+    if (inputs["normal"].desc.extent != extent)
+        declaration.problems.push_back(
+            {"normal", fmt::format("is {} but depth is {}", describe(inputs["normal"].desc),
+                                   describe(inputs["depth"].desc))});
+    const std::uint64_t pixels = std::uint64_t{extent.width} * extent.height;
+    declaration.outputs.push_back({.port = "rays", .desc = Desc::buffer(pixels * sizeof(shared::RayRecord))});
+    declaration.steps.push_back({.name = "generate",
+                                 .shaders = {"ray_effects/hemisphere_rays.comp"},
+                                 .defines = {},
+                                 .uses = {{.port = "depth", .access = Access::Fetch},
+                                          {.port = "normal", .access = Access::Image},
+                                          {.port = "rays", .access = Access::Storage, .write = true}},
+                                 .modules = {},
+                                 .group = "rays"});
+    declaration.depends = Causes::Frame | Causes::Properties;
+    return declaration;
+}
+
+void HemisphereRays::execute(const Step&, Commands& commands) {
+    commands.set("maximumDistance", distance);
+    commands.dispatchOver(commands.desc("depth").extent);
+}
+
+} // namespace kestrel

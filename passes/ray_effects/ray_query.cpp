@@ -1,0 +1,49 @@
+#include "ray_query.h"
+#include "execute/commands.h"
+#include "shared/ray.h"
+#include <algorithm>
+
+namespace kestrel {
+namespace {
+// A dispatch may have 65,535 groups an axis at least, so rays are laid out in rows of this many groups.
+constexpr std::uint32_t groupSize = 64;
+constexpr std::uint32_t groupsPerRow = 32768;
+} // namespace
+
+PassType RayQuery::type() {
+    return Describe<RayQuery>("RayQuery", "Traces a buffer of rays through any tracer into a buffer of hits")
+        .input("rays", PortKind::Buffer, "Ray records (shared/ray.h)")
+        .input("tracer", PortKind::Tracer, "Who answers")
+        .output("hits", PortKind::Buffer, "One hit record a ray (shared/ray.h)")
+        .choice("query", &RayQuery::query, {"any", "closest"}, "Is anything there, or what is nearest?")
+        .flag("snap", &RayQuery::snap, "Bears that a tracer replaces directions by nearby ones");
+}
+
+std::uint64_t RayQuery::rayCount(const Desc& rays) { return rays.bytes / sizeof(shared::RayRecord); }
+
+Declaration RayQuery::declare(const World&, const Inputs& inputs, const Demand&) const {
+    Declaration declaration;
+    const std::uint64_t count = rayCount(inputs["rays"].desc);
+    declaration.outputs.push_back({.port = "hits", .desc = Desc::buffer(count * sizeof(shared::HitRecord))});
+    Step step{.name = "trace",
+              .shaders = {"ray_effects/ray_query.comp"},
+              .defines = {{"GROUP_SIZE", std::to_string(groupSize)},
+                          {"GROUPS_PER_ROW", std::to_string(groupsPerRow)}},
+              .uses = {{.port = "rays", .access = Access::Storage},
+                       {.port = "hits", .access = Access::Storage, .write = true}},
+              .modules = {{"tracer", (query == Query::Any ? takes::AnyHit : takes::ClosestHit) |
+                                         (snap ? takes::BearsSnap : 0)}},
+              .group = "tracing"};
+    if (query == Query::Closest) step.defines["CLOSEST"] = "1";
+    declaration.steps.push_back(std::move(step));
+    declaration.depends = Causes::Properties;
+    return declaration;
+}
+
+void RayQuery::execute(const Step&, Commands& commands) {
+    const auto count = static_cast<std::uint32_t>(rayCount(commands.desc("rays")));
+    const std::uint32_t groups = (count + groupSize - 1) / groupSize;
+    commands.dispatch(std::min(groups, groupsPerRow), (groups + groupsPerRow - 1) / groupsPerRow);
+}
+
+} // namespace kestrel

@@ -1,0 +1,34 @@
+// The first ray of each pixel of RayAmbientOcclusion, bit for bit, so that their results can be compared ray by ray.
+#include "lib/frame.glsl"
+#include "lib/view.glsl"
+#include "lib/sampling.glsl"
+#include "shared/random.h"
+#include "shared/ray.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+uniform sampler2D depth;
+layout(rgba16f) uniform readonly image2D normal;
+layout(std430) writeonly buffer Rays { RayRecord rays[]; };
+layout(std140) uniform DepthView { ViewData depthView; };
+uniform float maximumDistance; // 0: unbounded
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = imageSize(normal);
+    if (any(greaterThanEqual(pixel, size))) return;
+
+    float z = texelFetch(depth, pixel, 0).r;
+    vec3 n = imageLoad(normal, pixel).xyz;
+    bool background = z == 0.0 || dot(n, n) == 0.0;
+    n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
+    vec2 u = scrambledSobol(frame.index, pixelSeed(uvec2(pixel), randomRayDirection, frame.seed));
+    RayRecord ray;
+    ray.origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
+    ray.tMin = 0.0;
+    ray.direction = cosineHemisphere(u, n);
+    ray.tMax = maximumDistance > 0.0 ? maximumDistance : uintBitsToFloat(0x7f800000u);
+    ray.normal = n;
+    ray.flags = background ? 0u : 1u;
+    rays[pixel.y * size.x + pixel.x] = ray;
+}
