@@ -9,7 +9,7 @@ namespace {
 // Walks down to every leaf whose box the ray meets before `tMax` (which `leaf` may lower), the nearer child
 // first. `leaf` gets one triangle at a time and returns true to stop.
 template<class Leaf>
-void traverse(const Bvh& bvh, const BvhRay& ray, const float& tMax, Leaf&& leaf) {
+void traverse(const Bvh& bvh, const TraceRay& ray, const float& tMax, Leaf&& leaf) {
     struct Entry {
         std::uint32_t reference;
         float entry;
@@ -47,18 +47,18 @@ void traverse(const Bvh& bvh, const BvhRay& ray, const float& tMax, Leaf&& leaf)
     }
 }
 
-std::optional<BvhHit> intersect(const BvhRay& ray, float tMax, const BvhTriangle& triangle) {
+std::optional<TraceHit> intersect(const TraceRay& ray, float tMax, const BvhTriangle& triangle) {
     shared::TriangleHit hit{};
     if (!shared::intersectTriangle(ray.origin, ray.direction, ray.tMin, tMax, triangle.p0, triangle.p1,
                                    triangle.p2, hit))
         return std::nullopt;
-    return BvhHit{hit.t, hit.u, hit.v, triangle.triangle};
+    return TraceHit{hit.t, hit.u, hit.v, triangle.triangle};
 }
 
 } // namespace
 
-std::optional<BvhHit> closestHit(const Bvh& bvh, const BvhRay& ray) {
-    std::optional<BvhHit> best;
+std::optional<TraceHit> closestHit(const Bvh& bvh, const TraceRay& ray) {
+    std::optional<TraceHit> best;
     float tMax = ray.tMax;
     traverse(bvh, ray, tMax, [&](const BvhTriangle& triangle) {
         const auto hit = intersect(ray, tMax, triangle);
@@ -71,7 +71,7 @@ std::optional<BvhHit> closestHit(const Bvh& bvh, const BvhRay& ray) {
     return best;
 }
 
-bool anyHit(const Bvh& bvh, const BvhRay& ray) {
+bool anyHit(const Bvh& bvh, const TraceRay& ray) {
     bool found = false;
     traverse(bvh, ray, ray.tMax, [&](const BvhTriangle& triangle) {
         found = intersect(ray, ray.tMax, triangle).has_value();
@@ -80,7 +80,7 @@ bool anyHit(const Bvh& bvh, const BvhRay& ray) {
     return found;
 }
 
-void allHits(const Bvh& bvh, const BvhRay& ray, const std::function<bool(const BvhHit&)>& visit) {
+void allHits(const Bvh& bvh, const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit) {
     traverse(bvh, ray, ray.tMax, [&](const BvhTriangle& triangle) {
         const auto hit = intersect(ray, ray.tMax, triangle);
         return hit && visit(*hit);

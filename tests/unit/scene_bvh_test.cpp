@@ -57,8 +57,8 @@ Geometry sphereGeometry(int n) {
     return g;
 }
 
-std::vector<BvhHit> bruteForce(const Geometry& g, const BvhRay& ray) {
-    std::vector<BvhHit> hits;
+std::vector<TraceHit> bruteForce(const Geometry& g, const TraceRay& ray) {
+    std::vector<TraceHit> hits;
     for (std::uint32_t i = 0; i < g.triangleCount(); ++i) {
         const auto corner = [&](std::uint32_t k) { return g.positions[g.indices[3 * i + k]]; };
         shared::TriangleHit hit{};
@@ -66,7 +66,7 @@ std::vector<BvhHit> bruteForce(const Geometry& g, const BvhRay& ray) {
                                       corner(2), hit))
             hits.push_back({hit.t, hit.u, hit.v, i});
     }
-    std::sort(hits.begin(), hits.end(), [](const BvhHit& a, const BvhHit& b) {
+    std::sort(hits.begin(), hits.end(), [](const TraceHit& a, const TraceHit& b) {
         return a.t != b.t ? a.t < b.t : a.triangle < b.triangle;
     });
     return hits;
@@ -81,22 +81,22 @@ int expectEqualsBruteForce(const Geometry& g, const BvhSettings& settings, std::
     for (std::uint32_t i = 0; i < rays; ++i) {
         const glm::vec3 from = 1.5f * scale * pointInCube(90000 + 2 * i);
         const glm::vec3 to = scale * pointInCube(90001 + 2 * i);
-        BvhRay ray{from, glm::normalize(to - from)};
+        TraceRay ray{from, glm::normalize(to - from)};
         if (i % 3 == 1) ray.tMax = 0.7f * scale;
         if (i % 3 == 2) ray.tMin = 0.4f * scale;
-        const std::vector<BvhHit> expected = bruteForce(g, ray);
+        const std::vector<TraceHit> expected = bruteForce(g, ray);
         const auto closest = closestHit(bvh, ray);
         EXPECT_EQ(closest.has_value(), !expected.empty());
         if (closest && !expected.empty()) {
             EXPECT_EQ(*closest, expected.front());
         }
         EXPECT_EQ(anyHit(bvh, ray), !expected.empty());
-        std::vector<BvhHit> all;
-        allHits(bvh, ray, [&](const BvhHit& hit) {
+        std::vector<TraceHit> all;
+        allHits(bvh, ray, [&](const TraceHit& hit) {
             all.push_back(hit);
             return false;
         });
-        std::sort(all.begin(), all.end(), [](const BvhHit& a, const BvhHit& b) {
+        std::sort(all.begin(), all.end(), [](const TraceHit& a, const TraceHit& b) {
             return a.t != b.t ? a.t < b.t : a.triangle < b.triangle;
         });
         EXPECT_EQ(all, expected);
@@ -205,7 +205,7 @@ TEST(Bvh, IdenticalCentroidsAndCoplanarDuplicatesAreSplitAnyway) {
     expectValidTree(g, bvh);
     EXPECT_LE(bvh.depth, 10);
     int count = 0;
-    allHits(bvh, {{0, 0, 1}, {0, 0, -1}}, [&](const BvhHit&) { return ++count == 500; });
+    allHits(bvh, {{0, 0, 1}, {0, 0, -1}}, [&](const TraceHit&) { return ++count == 500; });
     EXPECT_EQ(count, 500);
     const auto closest = closestHit(bvh, {{0, 0, 1}, {0, 0, -1}});
     ASSERT_TRUE(closest);
@@ -217,7 +217,7 @@ TEST(Bvh, VisitStopsWhenAsked) {
     for (int i = 0; i < 50; ++i)
         addTriangle(g, {-1, -1, -0.1f * static_cast<float>(i)}, {1, -1, 0}, {0, 1, 0});
     int count = 0;
-    allHits(buildBvh(g), {{0, 0, 9}, {0, 0, -1}}, [&](const BvhHit&) { return ++count == 3; });
+    allHits(buildBvh(g), {{0, 0, 9}, {0, 0, -1}}, [&](const TraceHit&) { return ++count == 3; });
     EXPECT_EQ(count, 3);
 }
 

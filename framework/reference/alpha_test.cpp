@@ -1,0 +1,86 @@
+#include "reference/alpha_test.h"
+#include <algorithm>
+#include <cmath>
+
+namespace kestrel {
+namespace {
+
+int wrapped(int i, int size, Wrap wrap) {
+    if (wrap == Wrap::ClampToEdge) return std::clamp(i, 0, size - 1);
+    const int period = wrap == Wrap::Repeat ? size : 2 * size;
+    const int k = ((i % period) + period) % period;
+    return k < size ? k : period - 1 - k;
+}
+
+// KHR_texture_transform: scale, then rotation, then offset.
+glm::vec2 transformed(const TextureRef& texture, const glm::vec2& texCoord) {
+    const glm::vec2 p = texCoord * texture.scale;
+    const float c = std::cos(texture.rotation), s = std::sin(texture.rotation);
+    return glm::vec2(c * p.x + s * p.y, -s * p.x + c * p.y) + texture.offset;
+}
+
+} // namespace
+
+std::uint32_t firstMaskedTriangle(const Geometry& geometry) {
+    const auto count = [&](TriangleClass c) { return geometry.ranges[static_cast<size_t>(c)].count; };
+    return geometry.triangleCount() - count(TriangleClass::Masked) - count(TriangleClass::MaskedDoubleSided);
+}
+
+AlphaTest::AlphaTest(const Geometry& geometry, const Scene& scene)
+    : first_(firstMaskedTriangle(geometry))
+    , images_(scene.images.size()) {
+    for (const Material& material : flattenedMaterials(scene)) {
+        materials_.push_back({material.alphaMode == AlphaMode::Opaque, material.baseColour.a,
+                              material.alphaCutoff, material.baseColourTexture});
+    }
+    for (std::uint32_t triangle = first_; triangle < geometry.triangleCount(); ++triangle) {
+        const std::uint32_t index = geometry.materials[triangle];
+        materialOf_.push_back(index);
+        const TextureRef& texture = materials_[index].texture;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const VertexAttributes& vertex = geometry.attributes[geometry.indices[3 * triangle + k]];
+            corners_.push_back({texture.texCoord == 1 ? vertex.texCoord1 : vertex.texCoord, vertex.colour.a});
+        }
+        if (!texture.present()) continue;
+        AlphaImage& image = images_[static_cast<size_t>(texture.image)];
+        if (image.width > 0) continue;
+        const TextureImage& source = scene.images[static_cast<size_t>(texture.image)];
+        image.width = source.width;
+        image.height = source.height;
+        image.alpha.resize(source.rgba.size() / 4);
+        for (size_t i = 0; i < image.alpha.size(); ++i) image.alpha[i] = source.rgba[4 * i + 3];
+    }
+}
+
+float AlphaTest::sample(const TextureRef& texture, const glm::vec2& texCoord) const {
+    const AlphaImage& image = images_[static_cast<size_t>(texture.image)];
+    const glm::vec2 p = transformed(texture, texCoord) * glm::vec2(image.width, image.height);
+    const auto at = [&](int x, int y) {
+        const int column = wrapped(x, image.width, texture.wrapS);
+        const int row = wrapped(y, image.height, texture.wrapT);
+        return static_cast<float>(image.alpha[static_cast<size_t>(row) * static_cast<size_t>(image.width) +
+                                              static_cast<size_t>(column)]) /
+               255;
+    };
+    if (texture.nearest) return at(static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)));
+    const glm::vec2 q = p - 0.5f;
+    const glm::vec2 f = q - glm::floor(q);
+    const int x = static_cast<int>(std::floor(q.x)), y = static_cast<int>(std::floor(q.y));
+    return glm::mix(glm::mix(at(x, y), at(x + 1, y), f.x), glm::mix(at(x, y + 1), at(x + 1, y + 1), f.x),
+                    f.y);
+}
+
+bool AlphaTest::isSolid(std::uint32_t triangle, float u, float v) const {
+    if (triangle < first_) return true;
+    const size_t i = triangle - first_;
+    const MaskedMaterial& material = materials_[materialOf_[i]];
+    if (material.opaque) return true;
+    const Corner *a = &corners_[3 * i], *b = a + 1, *c = a + 2;
+    const float w = 1 - u - v;
+    float alpha = material.alpha * (w * a->alpha + u * b->alpha + v * c->alpha);
+    if (material.texture.present())
+        alpha *= sample(material.texture, w * a->texCoord + u * b->texCoord + v * c->texCoord);
+    return alpha >= material.cutoff;
+}
+
+} // namespace kestrel

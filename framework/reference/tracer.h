@@ -1,0 +1,42 @@
+// The reference ray tracer: Embree over a flattened scene, with alpha tests.
+#pragma once
+#include "scene/geometry.h"
+#include "scene/trace.h"
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace kestrel {
+
+// Traces the geometry that it was built from (in Embree's robust mode, both sides of every triangle). Points
+// of masked and blended materials whose base colour alpha is below the cutoff let rays pass. All queries may
+// be called from several threads at once.
+class ReferenceTracer {
+public:
+    // Copies what it needs. Throws MachineError if Embree is not built in or refuses.
+    ReferenceTracer(const Geometry& geometry, const Scene& scene);
+    ~ReferenceTracer();
+    ReferenceTracer(ReferenceTracer&&) noexcept;
+    ReferenceTracer& operator=(ReferenceTracer&&) noexcept;
+
+    [[nodiscard]] std::optional<TraceHit> closestHit(const TraceRay& ray) const;
+    [[nodiscard]] bool anyHit(const TraceRay& ray) const;
+    // Hands every hit to `visit`, in no particular order, until that returns true.
+    void allHits(const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit) const;
+
+    // Whole batches in packets of 16. `hits` is as long as `rays`; TraceHit::none where nothing was hit.
+    // `coherent` says that neighbours in the batch run alike (camera rays).
+    void closestHits(std::span<const TraceRay> rays, std::span<TraceHit> hits, bool coherent) const;
+    // 1 where something was hit, else 0.
+    void anyHits(std::span<const TraceRay> rays, std::span<std::uint8_t> hits) const;
+
+    [[nodiscard]] const Box& bounds() const; // of the geometry, render space
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace kestrel
