@@ -108,9 +108,9 @@ void completePrimitives(Scene& scene) {
 }
 
 // A camera to the front, the right and above that sees the whole bounding sphere.
-void addDefaultCamera(Scene& scene) {
+// `bounds` are those without rootTransform, below which the camera hangs like everything else.
+void addDefaultCamera(Scene& scene, const TimelineBounds& bounds) {
     constexpr double fov = 0.8;
-    const TimelineBounds bounds = timelineBounds(scene, glm::dmat4(1));
     const double radius = bounds.radius > 0 ? bounds.radius : 1;
     // Wide frames are cut at top and bottom first; the sphere touches no edge of a frame at least as wide as
     // high.
@@ -139,7 +139,6 @@ void addDefaultCamera(Scene& scene) {
 
 void finishScene(Scene& scene) {
     completePrimitives(scene);
-    if (scene.cameras.empty()) addDefaultCamera(scene);
     const TimelineBounds bounds = timelineBounds(scene, scene.rootTransform);
     // Squared lengths of render-space vectors stay inside float.
     constexpr double largest = 1e18;
@@ -150,6 +149,9 @@ void finishScene(Scene& scene) {
                         "most {:g} is drawn",
                         bounds.radius, largest));
     scene.origin = bounds.empty ? glm::dvec3(scene.rootTransform[3]) : bounds.centre();
+    if (!scene.cameras.empty()) return;
+    const glm::dmat4 identity(1);
+    addDefaultCamera(scene, scene.rootTransform == identity ? bounds : timelineBounds(scene, identity));
 }
 
 } // namespace kestrel

@@ -199,7 +199,8 @@ private:
         if (even_ && sample.sinceJump > 0)
             path.widening = glm::max(path.widening, glm::abs(position - path.last));
         if (!even_ && sample.sinceJump > 1)
-            path.widening = glm::max(path.widening, glm::abs(position - 2.0 * path.last + path.beforeLast));
+            path.widening =
+                glm::max(path.widening, 0.5 * glm::abs(position - 2.0 * path.last + path.beforeLast));
         path.beforeLast = path.last;
         path.last = position;
     }

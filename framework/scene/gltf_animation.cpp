@@ -1,0 +1,101 @@
+// Animations of a glTF file.
+#include "scene/gltf_context.h"
+#include <fmt/format.h>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace kestrel {
+namespace {
+
+std::optional<AnimatedPath> pathOf(const std::string& name) {
+    if (name == "translation") return AnimatedPath::Translation;
+    if (name == "rotation") return AnimatedPath::Rotation;
+    if (name == "scale") return AnimatedPath::Scale;
+    if (name == "weights") return AnimatedPath::Weights;
+    return std::nullopt;
+}
+
+Interpolation interpolationOf(const std::string& name) {
+    if (name == "STEP") return Interpolation::Step;
+    return name == "CUBICSPLINE" ? Interpolation::CubicSpline : Interpolation::Linear;
+}
+
+size_t targetsOf(const Scene& scene, const Node& node) {
+    if (node.mesh < 0) return 0;
+    const Mesh& mesh = scene.meshes[static_cast<size_t>(node.mesh)];
+    return mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
+}
+
+// Why a channel has no effect here, or empty.
+std::string reasonToIgnore(const GltfContext& context, const tinygltf::AnimationChannel& source) {
+    const std::optional<AnimatedPath> path = pathOf(source.target_path);
+    if (!path) return fmt::format("animations of '{}' are ignored", source.target_path.substr(0, 60));
+    const Node& node = context.scene.nodes[static_cast<size_t>(source.target_node)];
+    if (*path == AnimatedPath::Weights)
+        return targetsOf(context.scene, node) == 0
+                   ? "animated weights of nodes without morph targets are ignored"
+                   : "";
+    return node.matrix ? "animations of nodes with a matrix are ignored" : "";
+}
+
+std::vector<float> readTimes(GltfContext& context, int accessor, const std::string& what) {
+    const std::vector<float>& times = context.accessors.floats(accessor, 1, what);
+    if (times.front() < 0) context.fail(what + " begins before 0");
+    for (size_t i = 0; i + 1 < times.size(); ++i)
+        if (!(times[i] < times[i + 1]))
+            context.fail(fmt::format("{} does not rise from element {} to the next", what, i));
+    return times;
+}
+
+std::optional<AnimationChannel> readChannel(GltfContext& context, const tinygltf::Animation& animation,
+                                            const tinygltf::AnimationChannel& source,
+                                            const std::string& what) {
+    if (source.sampler < 0 || static_cast<size_t>(source.sampler) >= animation.samplers.size())
+        context.fail(fmt::format("{}.sampler is {}, but there are {} samplers", what, source.sampler,
+                                 animation.samplers.size()));
+    if (const std::string reason = reasonToIgnore(context, source); !reason.empty()) {
+        context.warn(reason);
+        return std::nullopt;
+    }
+    const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<size_t>(source.sampler)];
+    AnimationChannel channel;
+    channel.node = source.target_node;
+    channel.path = *pathOf(source.target_path);
+    channel.interpolation = interpolationOf(sampler.interpolation);
+    channel.times = readTimes(context, sampler.input, what + " input");
+    size_t components = channel.path == AnimatedPath::Rotation ? 4 : 3;
+    if (channel.path == AnimatedPath::Weights) components = 1;
+    channel.values = context.accessors.floats(sampler.output, static_cast<int>(components), what + " output");
+    if (channel.path == AnimatedPath::Weights)
+        components = targetsOf(context.scene, context.scene.nodes[static_cast<size_t>(channel.node)]);
+    const size_t wanted =
+        channel.times.size() * components * (channel.interpolation == Interpolation::CubicSpline ? 3 : 1);
+    if (channel.values.size() != wanted)
+        context.fail(fmt::format("{} output has {} values; {} keys need {}", what, channel.values.size(),
+                                 channel.times.size(), wanted));
+    return channel;
+}
+
+} // namespace
+
+void readGltfAnimations(GltfContext& context) {
+    std::set<std::pair<int, AnimatedPath>> driven;
+    for (size_t i = 0; i < context.model.animations.size(); ++i) {
+        const tinygltf::Animation& source = context.model.animations[i];
+        Animation animation;
+        animation.name = source.name;
+        for (size_t j = 0; j < source.channels.size(); ++j) {
+            const std::string what = fmt::format("animations[{}].channels[{}]", i, j);
+            std::optional<AnimationChannel> channel = readChannel(context, source, source.channels[j], what);
+            if (!channel) continue;
+            if (!driven.emplace(channel->node, channel->path).second)
+                context.warn(
+                    "several animations drive the same property; all play together and the last one wins");
+            animation.channels.push_back(std::move(*channel));
+        }
+        if (!animation.channels.empty()) context.scene.animations.push_back(std::move(animation));
+    }
+}
+
+} // namespace kestrel

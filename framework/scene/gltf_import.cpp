@@ -1,0 +1,104 @@
+#include "scene/gltf_import.h"
+#include "scene/gltf_context.h"
+#include "scene/gltf_schema.h"
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <set>
+
+namespace kestrel {
+namespace {
+
+constexpr std::array supportedExtensions{"KHR_lights_punctual",  "KHR_materials_emissive_strength",
+                                         "KHR_materials_ior",    "KHR_materials_transmission",
+                                         "KHR_materials_unlit",  "KHR_mesh_quantization",
+                                         "KHR_texture_transform"};
+
+bool isSupported(const std::string& extension) {
+    return std::find(supportedExtensions.begin(), supportedExtensions.end(), extension) !=
+           supportedExtensions.end();
+}
+
+// The names of all extensions that occur anywhere: files forget to list them in extensionsUsed.
+void collectExtensions(const nlohmann::json& value, std::set<std::string>& names) {
+    if (value.is_object()) {
+        const auto extensions = value.find("extensions");
+        if (extensions != value.end() && extensions->is_object())
+            for (const auto& [name, content] : extensions->items()) names.insert(name);
+    }
+    for (const nlohmann::json& below : value)
+        if (below.is_structured()) collectExtensions(below, names);
+}
+
+// tinygltf fills its structures from the checked document. It gets neither buffers nor images, which are read
+// here, within bounds; nor what it would copy into every sampler of an animation.
+tinygltf::Model parseModel(const GltfFile& file) {
+    nlohmann::json reduced = file.document;
+    reduced.erase("buffers");
+    reduced.erase("images");
+    if (const auto animations = reduced.find("animations"); animations != reduced.end())
+        for (nlohmann::json& animation : *animations) {
+            animation.erase("extensions");
+            animation.erase("extras");
+        }
+    const std::string text = reduced.dump();
+    tinygltf::TinyGLTF parser;
+    tinygltf::Model model;
+    std::string errors, warnings;
+    if (!parser.LoadASCIIFromString(&model, &errors, &warnings, text.data(),
+                                    static_cast<unsigned int>(text.size()), "", 0)) {
+        std::replace(errors.begin(), errors.end(), '\n', ' ');
+        while (errors.ends_with(' ')) errors.pop_back();
+        failGltf(file, errors.empty() ? "is not glTF" : errors);
+    }
+    return model;
+}
+
+} // namespace
+
+void GltfContext::warn(const std::string& message) {
+    if (std::find(scene.warnings.begin(), scene.warnings.end(), message) == scene.warnings.end())
+        scene.warnings.push_back(message);
+}
+
+const tinygltf::Value* gltfExtension(const tinygltf::ExtensionMap& extensions, const char* name) {
+    const auto found = extensions.find(name);
+    return found != extensions.end() && found->second.IsObject() ? &found->second : nullptr;
+}
+
+double gltfNumber(const tinygltf::Value& object, const char* name, double otherwise) {
+    return object.Has(name) ? object.Get(name).GetNumberAsDouble() : otherwise;
+}
+
+void checkGltfExtensions(GltfContext& context) {
+    std::string lacking;
+    for (const std::string& name : context.model.extensionsRequired)
+        if (!isSupported(name)) lacking += (lacking.empty() ? "" : ", ") + name;
+    if (!lacking.empty()) context.fail("requires extensions that Kestrel lacks: " + lacking);
+    std::set<std::string> used(context.model.extensionsUsed.begin(), context.model.extensionsUsed.end());
+    collectExtensions(context.file.document, used);
+    for (const std::string& name : used)
+        if (!isSupported(name)) context.warn(fmt::format("the extension {} is ignored", name));
+}
+
+Scene importGltf(const std::filesystem::path& path) {
+    GltfFile file = readGltfFile(path);
+    checkGltfSchema(file);
+    const tinygltf::Model model = parseModel(file);
+    Scene scene;
+    scene.name = path.filename().string();
+    scene.source = path.string();
+    AccessorReader accessors(file, model);
+    GltfContext context{file, model, accessors, scene, {}};
+    checkGltfExtensions(context);
+    readBuffers(file);
+    readGltfImages(context);
+    readGltfMaterials(context);
+    readGltfMeshes(context);
+    readGltfNodes(context);
+    readGltfSkins(context);
+    readGltfAnimations(context);
+    return scene;
+}
+
+} // namespace kestrel
