@@ -1,0 +1,66 @@
+#include "reference_ambient_occlusion.h"
+#include "execute/commands.h"
+#include "reference/ambient_occlusion.h"
+#include <fmt/format.h>
+
+namespace kestrel {
+
+PassType ReferenceAmbientOcclusion::type() {
+    return Describe<ReferenceAmbientOcclusion>("ReferenceAmbientOcclusion",
+                                               "Ambient occlusion by Embree on the CPU: the truth")
+        .input("position", PortKind::Texture, "Render-space positions of the surfaces")
+        .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .output("visibility", PortKind::Texture,
+                "Share of the cosine-weighted hemisphere that is open; 1 where nothing is")
+        .number("samples", &ReferenceAmbientOcclusion::samples, 2, 65536, "rays",
+                "Rays a pixel, rounded up to an even number")
+        .number("distance", &ReferenceAmbientOcclusion::distance, 0, 1e9, "scene units",
+                "How far occluders count; 0: any distance");
+}
+
+Declaration ReferenceAmbientOcclusion::declare(const World&, const Inputs& inputs, const Demand&) const {
+    Declaration declaration;
+    const Desc& position = inputs["position"].desc;
+    if (inputs["normal"].desc.extent != position.extent)
+        declaration.problems.push_back(
+            {"normal",
+             fmt::format("is {} but position is {}", describe(inputs["normal"].desc), describe(position))});
+    Output visibility{.port = "visibility",
+                      .desc = Desc::texture2D(Format::R32F, position.extent, position.view)};
+    if (inputs["position"].constant) { // nothing in view
+        visibility.constant = glm::vec4(1);
+        declaration.outputs.push_back(std::move(visibility));
+        declaration.leftOut.push_back({"tracing", "there is nothing in view"});
+        return declaration;
+    }
+    declaration.outputs.push_back(std::move(visibility));
+    declaration.steps.push_back({.name = "trace",
+                                 .shaders = {},
+                                 .defines = {},
+                                 .uses = {{.port = "position", .access = Access::Host},
+                                          {.port = "normal", .access = Access::Host},
+                                          {.port = "visibility", .access = Access::Copy, .write = true}},
+                                 .modules = {},
+                                 .group = "reference"});
+    declaration.depends = Causes::Geometry | Causes::Transforms | Causes::Materials | Causes::Properties;
+    return declaration;
+}
+
+void ReferenceAmbientOcclusion::execute(const Step&, Commands& commands) {
+    const ReferenceTracer tracer(commands.geometry(), commands.scene());
+    OcclusionSettings settings;
+    settings.samples = samples;
+    if (distance > 0) settings.maximumDistance = distance;
+    settings.seed = commands.frame().seed;
+    settings.progress = [&](double fraction) { commands.progress(fraction); };
+    const OcclusionResult result = ambientOcclusion(tracer,
+                                                    {.position = commands.downloadImage("position"),
+                                                     .normal = commands.downloadImage("normal"),
+                                                     .faceNormal = {}},
+                                                    settings);
+    commands.uploadImage("visibility", result.visibility);
+    commands.report("noise", result.noise);
+    commands.report("rays", static_cast<double>(result.rays));
+}
+
+} // namespace kestrel

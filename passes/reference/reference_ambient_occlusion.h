@@ -1,0 +1,18 @@
+// Ambient occlusion by Embree on the CPU: what the tracers are measured against.
+#pragma once
+#include "graph/registry.h"
+
+namespace kestrel {
+
+class ReferenceAmbientOcclusion final : public Pass {
+public:
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+    void execute(const Step& step, Commands& commands) override;
+
+    int samples = 256;
+    float distance = 0;
+};
+
+} // namespace kestrel
