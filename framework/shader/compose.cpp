@@ -1,4 +1,5 @@
 #include "shader/compose.h"
+#include "shader/names.h"
 #include "shader/stage_composer.h"
 #include <algorithm>
 #include <fmt/format.h>

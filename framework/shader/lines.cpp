@@ -104,4 +104,20 @@ bool isIdentifier(std::string_view text) {
     return !text.empty() && isNameStart(text.front()) && std::all_of(text.begin(), text.end(), isNamePart);
 }
 
+std::optional<IncludeTarget> includeTargetOf(std::string_view rest) {
+    constexpr std::string_view port = "<port:";
+    if (rest.starts_with(port) && rest.ends_with('>'))
+        return IncludeTarget{true,
+                             std::string(trimmed(rest.substr(port.size(), rest.size() - port.size() - 1)))};
+    if (rest.size() < 2 || rest.front() != '"' || rest.find('"', 1) != rest.size() - 1) return std::nullopt;
+    return IncludeTarget{false, std::string(rest.substr(1, rest.size() - 2))};
+}
+
+std::optional<MacroLine> macroLineOf(const Directive& directive) {
+    const std::vector<std::string_view> names = identifiersOf(directive.rest);
+    if (names.empty() || !directive.rest.starts_with(names.front())) return std::nullopt;
+    const std::string_view rest = std::string_view(directive.rest).substr(names.front().size());
+    return MacroLine{std::string(names.front()), rest.starts_with('('), std::string(trimmed(rest))};
+}
+
 } // namespace kestrel

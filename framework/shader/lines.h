@@ -25,6 +25,22 @@ struct Directive {
 };
 std::optional<Directive> directiveOf(std::string_view code);
 
+// What an #include asks for: the module at a port (<port:NAME>) or a library file ("PATH"). Nothing for
+// anything else.
+struct IncludeTarget {
+    bool isPort = false;
+    std::string name; // of the port, or the path
+};
+std::optional<IncludeTarget> includeTargetOf(std::string_view rest);
+
+// The macro that a #define or #undef speaks of, and the text it stands for.
+struct MacroLine {
+    std::string name;
+    bool takesArguments = false;
+    std::string text;
+};
+std::optional<MacroLine> macroLineOf(const Directive& directive);
+
 // The identifiers (also keywords) of a code line, in order.
 std::vector<std::string_view> identifiersOf(std::string_view code);
 

@@ -32,6 +32,9 @@ std::string vectorPrefix(glslang::TBasicType type) {
     }
 }
 
+// glslang's strings have an allocator of their own.
+std::string plain(const glslang::TString& text) { return {text.begin(), text.end()}; }
+
 // A type as GLSL writes it, without array brackets.
 std::string typeName(const glslang::TType& type) {
     if (type.isMatrix()) {
@@ -43,9 +46,9 @@ std::string typeName(const glslang::TType& type) {
     }
     if (type.isVector())
         return fmt::format("{}vec{}", vectorPrefix(type.getBasicType()), type.getVectorSize());
-    if (type.getBasicType() == glslang::EbtSampler) return type.getSampler().getString().c_str();
-    if (type.isStruct()) return type.getTypeName().c_str();
-    return type.getBasicTypeString().c_str();
+    if (type.getBasicType() == glslang::EbtSampler) return plain(type.getSampler().getString());
+    if (type.isStruct()) return plain(type.getTypeName());
+    return plain(type.getBasicTypeString());
 }
 
 std::vector<ShaderStage> stagesOf(EShLanguageMask mask) {

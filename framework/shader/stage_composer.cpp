@@ -1,19 +1,12 @@
 #include "shader/stage_composer.h"
+#include "shader/names.h"
 #include <algorithm>
-#include <array>
 #include <fmt/format.h>
 
 namespace kestrel {
 namespace {
 
-constexpr std::array<std::string_view, 4> predefinedNames{"__LINE__", "__FILE__", "__VERSION__",
-                                                          "__cplusplus"};
 const Defines noDefines;
-
-bool isReserved(std::string_view name) {
-    if (name.find("__") == std::string_view::npos) return false;
-    return std::find(predefinedNames.begin(), predefinedNames.end(), name) == predefinedNames.end();
-}
 
 const std::string& defineText(const std::string& text) {
     static const std::string one = "1";
@@ -26,45 +19,12 @@ std::string defineLine(const std::string& name, const std::string& text) {
 
 std::vector<std::string> keysOf(const std::map<std::string, ModuleInstance>& modules) {
     std::vector<std::string> keys;
+    keys.reserve(modules.size());
     for (const auto& [key, instance] : modules) keys.push_back(key);
     return keys;
 }
 
-// The name between <port: and >, or nothing if `what` is not of that form.
-std::optional<std::string> portOf(std::string_view what) {
-    if (!what.starts_with("<port:") || !what.ends_with(">")) return std::nullopt;
-    return std::string(trimmed(what.substr(6, what.size() - 7)));
-}
-
-std::optional<std::string> quotedPath(std::string_view what) {
-    if (what.size() < 2 || what.front() != '"' || what.find('"', 1) != what.size() - 1) return std::nullopt;
-    return std::string(what.substr(1, what.size() - 2));
-}
-
-// The macro that a #define or #undef speaks of, and the rest of the line.
-struct MacroLine {
-    std::string name;
-    bool takesArguments = false;
-    std::string text;
-};
-std::optional<MacroLine> macroOf(const Directive& directive) {
-    const std::vector<std::string_view> names = identifiersOf(directive.rest);
-    if (names.empty() || !directive.rest.starts_with(names.front())) return std::nullopt;
-    const std::string_view rest = std::string_view(directive.rest).substr(names.front().size());
-    return MacroLine{std::string(names.front()), rest.starts_with('('), std::string(trimmed(rest))};
-}
-
 } // namespace
-
-std::string whyNotAName(std::string_view name) {
-    if (!isIdentifier(name)) return "is no GLSL name (letters, digits, underscores)";
-    if (name.find("__") != std::string_view::npos) return "has a double underscore, which GLSL reserves";
-    if (name.front() == '_' || name.back() == '_')
-        return "begins or ends with an underscore, which would make a double one";
-    if (name.starts_with("gl_") || name.starts_with("GL_")) return "begins with gl_, which GLSL reserves";
-    if (name == "M" || name == "defined") return "is reserved for composition";
-    return {};
-}
 
 StageComposer::StageComposer(const ProgramRequest& request, ShaderLibrary& library,
                              std::vector<Problem>& problems, std::set<std::string>& dependencies)
@@ -147,7 +107,9 @@ void StageComposer::appendLine(OpenFile& file, const ShaderLine& line) {
         return;
     }
     if (directive && takeDirective(file, line, *directive)) return;
-    if (active(file) != Truth::No) checkNames(file, line);
+    if (active(file) != Truth::No) {
+        for (std::string& message : nameProblems(line.code)) problem(file, line.number, std::move(message));
+    }
     out_ += line.raw;
     out_ += '\n';
 }
@@ -181,12 +143,11 @@ bool StageComposer::takeDirective(OpenFile& file, const ShaderLine& line, const 
 void StageComposer::takeInclude(OpenFile& file, const ShaderLine& line, std::string_view what) {
     bool appended = false;
     if (active(file) != Truth::No) {
-        const std::optional<std::string> port = portOf(what);
-        const std::optional<std::string> path = quotedPath(what);
-        if (port) {
-            appended = includePort(file, line, *port);
-        } else if (path) {
-            appended = includeLibrary(file, line, *path);
+        const std::optional<IncludeTarget> target = includeTargetOf(what);
+        if (target && target->isPort) {
+            appended = includePort(file, line, target->name);
+        } else if (target) {
+            appended = includeLibrary(file, line, target->name);
         } else {
             problem(file, line.number,
                     fmt::format("cannot read '#include {}': write #include \"folder/file.glsl\" or "
@@ -334,7 +295,7 @@ void StageComposer::takeExtension(OpenFile& file, const ShaderLine& line, const 
 
 // Records what a #define or #undef of a file means for later conditionals. False if it is refused.
 bool StageComposer::takeMacro(OpenFile& file, const ShaderLine& line, const Directive& directive) {
-    const std::optional<MacroLine> macroLine = macroOf(directive);
+    const std::optional<MacroLine> macroLine = macroLineOf(directive);
     if (!macroLine) return true; // the compiler says what is wrong with it
     const std::string& name = macroLine->name;
     if (name == "M" || request_.defines.contains(name) || file.scope.defines->contains(name)) {
@@ -365,20 +326,6 @@ MacroState StageComposer::macro(std::string_view name, const Scope& scope) const
         return {Truth::Yes, defineText(known->second)};
     if (const auto known = macros_.find(key); known != macros_.end()) return known->second;
     return {Truth::No, {}};
-}
-
-void StageComposer::checkNames(const OpenFile& file, const ShaderLine& line) {
-    for (const std::string_view name : identifiersOf(line.code)) {
-        if (isReserved(name))
-            problem(file, line.number,
-                    fmt::format("'{}' has a double underscore, which GLSL reserves", name));
-        if (name != "M") continue;
-        const auto end = static_cast<size_t>(name.data() + name.size() - line.code.data());
-        const std::string_view rest = trimmed(std::string_view(line.code).substr(end));
-        if (rest.starts_with('(') && trimmed(rest.substr(1)).starts_with('_'))
-            problem(file, line.number,
-                    "M(_...) would make a name with a double underscore, which GLSL reserves");
-    }
 }
 
 } // namespace kestrel

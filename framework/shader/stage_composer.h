@@ -59,7 +59,6 @@ private:
                     const ModuleInstance& instance);
     void takeExtension(OpenFile& file, const ShaderLine& line, const Directive& directive);
     bool takeMacro(OpenFile& file, const ShaderLine& line, const Directive& directive);
-    void checkNames(const OpenFile& file, const ShaderLine& line);
     void checkConditionalsClosed(const OpenFile& file);
 
     void switchScope(const Scope& from, const Scope& to);
@@ -83,8 +82,5 @@ private:
     std::map<std::string, Included> instances_; // by prefix
     std::map<std::string, MacroState> macros_;  // that files define
 };
-
-// Why `name` cannot be the name of a port or a define, as the end of a sentence; empty if it can.
-std::string whyNotAName(std::string_view name);
 
 } // namespace kestrel
