@@ -30,6 +30,33 @@ void collectExtensions(const nlohmann::json& value, std::set<std::string>& names
         if (below.is_structured()) collectExtensions(below, names);
 }
 
+// An accessor without data reads as zeros: where a compression that Kestrel lacks holds the data, that would
+// draw a heap of points at the origin.
+void refusePrimitivesWithoutData(const GltfFile& file) {
+    const auto meshes = file.document.find("meshes");
+    if (meshes == file.document.end()) return;
+    const auto hasData = [&](const nlohmann::json& index) {
+        const nlohmann::json& accessor = file.document["accessors"][index.get<size_t>()];
+        return accessor.contains("bufferView") || accessor.contains("sparse");
+    };
+    for (size_t m = 0; m < meshes->size(); ++m) {
+        const nlohmann::json& primitives = (*meshes)[m]["primitives"];
+        for (size_t p = 0; p < primitives.size(); ++p) {
+            const nlohmann::json& primitive = primitives[p];
+            const std::string what = fmt::format("meshes[{}].primitives[{}]", m, p);
+            const bool compressed = primitive.contains("extensions") &&
+                                    primitive["extensions"].contains("KHR_draco_mesh_compression");
+            for (const auto& [name, accessor] : primitive["attributes"].items())
+                if (compressed && !hasData(accessor))
+                    failGltf(file,
+                             what + " is stored by KHR_draco_mesh_compression alone, which Kestrel lacks");
+            if (primitive.contains("indices") &&
+                !file.document["accessors"][primitive["indices"].get<size_t>()].contains("bufferView"))
+                failGltf(file, what + ".indices refers to an accessor without a buffer view");
+        }
+    }
+}
+
 // tinygltf fills its structures from the checked document. It gets neither buffers nor images, which are read
 // here, within bounds; nor what it would copy into every sampler of an animation.
 tinygltf::Model parseModel(const GltfFile& file) {
@@ -84,6 +111,7 @@ void checkGltfExtensions(GltfContext& context) {
 Scene importGltf(const std::filesystem::path& path) {
     GltfFile file = readGltfFile(path);
     checkGltfSchema(file);
+    refusePrimitivesWithoutData(file);
     const tinygltf::Model model = parseModel(file);
     Scene scene;
     scene.name = path.filename().string();
