@@ -1,4 +1,5 @@
 #include "ray_ambient_occlusion.h"
+#include "draw/material_defines.h"
 #include "execute/commands.h"
 #include <algorithm>
 #include <charconv>
@@ -33,7 +34,8 @@ PassType RayAmbientOcclusion::type() {
                 "they stand for");
 }
 
-Declaration RayAmbientOcclusion::declare(const World&, const Inputs& inputs, const Demand& demand) const {
+Declaration RayAmbientOcclusion::declare(const World& world, const Inputs& inputs,
+                                         const Demand& demand) const {
     Declaration declaration;
     const Extent extent = inputs.connected("depth") ? inputs["depth"].desc.extent : Extent{};
     const View view = inputs.connected("depth") ? inputs["depth"].desc.view : View{};
@@ -70,6 +72,7 @@ Declaration RayAmbientOcclusion::declare(const World&, const Inputs& inputs, con
                            {.port = "visibility", .access = Access::Image, .write = true}},
                   .modules = {{"tracer", takes::AnyHit | (snap ? takes::BearsSnap : 0)}},
                   .group = "tracing"};
+        step.defines.merge(materialDefines(world.facts));
         if (i > 0) step.defines["CONTINUES"] = "1";
         if (i + 1 == count) step.defines["ENDS"] = "1";
         if (snaps) {

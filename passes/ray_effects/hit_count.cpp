@@ -1,4 +1,5 @@
 #include "hit_count.h"
+#include "draw/material_defines.h"
 #include "execute/commands.h"
 
 namespace kestrel {
@@ -24,7 +25,7 @@ Declaration HitCount::declare(const World& world, const Inputs&, const Demand&) 
     }
     declaration.steps.push_back({.name = "count",
                                  .shaders = {"ray_effects/hit_count.comp"},
-                                 .defines = {},
+                                 .defines = materialDefines(world.facts),
                                  .uses = {{.port = "count", .access = Access::Image, .write = true}},
                                  .modules = {{"hits", takes::AllHits}},
                                  .group = "tracing"});

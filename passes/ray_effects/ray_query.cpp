@@ -1,4 +1,5 @@
 #include "ray_query.h"
+#include "draw/material_defines.h"
 #include "execute/commands.h"
 #include "shared/ray.h"
 #include <algorithm>
@@ -21,7 +22,7 @@ PassType RayQuery::type() {
 
 std::uint64_t RayQuery::rayCount(const Desc& rays) { return rays.bytes / sizeof(shared::RayRecord); }
 
-Declaration RayQuery::declare(const World&, const Inputs& inputs, const Demand&) const {
+Declaration RayQuery::declare(const World& world, const Inputs& inputs, const Demand&) const {
     Declaration declaration;
     const std::uint64_t count = rayCount(inputs["rays"].desc);
     declaration.outputs.push_back({.port = "hits", .desc = Desc::buffer(count * sizeof(shared::HitRecord))});
@@ -34,6 +35,7 @@ Declaration RayQuery::declare(const World&, const Inputs& inputs, const Demand&)
               .modules = {{"tracer", (query == Query::Any ? takes::AnyHit : takes::ClosestHit) |
                                          (snap ? takes::BearsSnap : 0)}},
               .group = "tracing"};
+    step.defines.merge(materialDefines(world.facts));
     if (query == Query::Closest) step.defines["CLOSEST"] = "1";
     declaration.steps.push_back(std::move(step));
     declaration.depends = Causes::Properties;

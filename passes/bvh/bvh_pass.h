@@ -1,0 +1,19 @@
+// A bounding volume hierarchy built on the CPU and traversed in GLSL: exact triangles, the rival of every
+// proxy.
+#pragma once
+#include "graph/registry.h"
+
+namespace kestrel {
+
+class BvhPass final : public Pass {
+public:
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+    void execute(const Step& step, Commands& commands) override;
+
+    int leaf = 4;
+    int bins = 16;
+};
+
+} // namespace kestrel

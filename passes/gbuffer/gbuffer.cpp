@@ -1,0 +1,117 @@
+#include "gbuffer.h"
+#include "draw/material_defines.h"
+#include "execute/commands.h"
+
+namespace kestrel {
+namespace {
+
+// One colour output: its define switches the writing on in gbuffer.frag.
+struct Target {
+    const char* port;
+    const char* define;
+    Format format;
+    const char* sentence;
+};
+
+constexpr Target targets[] = {
+    {"view_depth", "OUT_VIEW_DEPTH", Format::R32F,
+     "Distance along the view axis in scene units; 0 where nothing is"},
+    {"normal", "OUT_NORMAL", Format::RGBA16F,
+     "Shading normal, unit, towards the eye, render space; 0 where nothing is"},
+    {"face_normal", "OUT_FACE_NORMAL", Format::RGBA16F,
+     "Normal of the triangle, unit, towards the eye, render space"},
+    {"position", "OUT_POSITION", Format::RGBA32F, "Render-space position; w is 1 where there is geometry"},
+    {"albedo", "OUT_ALBEDO", Format::RGBA16F, "Linear base colour; a is 1 where there is geometry"},
+    {"material", "OUT_MATERIAL", Format::RGBA8, "Roughness, metallic, and in z whether the surface is unlit"},
+    {"emission", "OUT_EMISSION", Format::RGBA16F, "Linear emitted radiance"},
+    {"motion", "OUT_MOTION", Format::RG32F,
+     "From this pixel to where its surface was in the last frame, in pixels"},
+    {"coverage", "OUT_COVERAGE", Format::R8, "1 where there is geometry, else 0"},
+};
+
+bool isConstantZero(const Target& target, const SceneFacts& facts) {
+    const std::string_view port = target.port;
+    return facts.triangles == 0 || (port == "emission" && !facts.hasEmission);
+}
+
+} // namespace
+
+PassType GBuffer::type() {
+    Describe<GBuffer> table(
+        "GBuffer", "Rasterizes what the camera sees first: depth, normals, position, material, motion");
+    table.output("depth", PortKind::Texture,
+                 "Reversed depth of the rasterizer: 1 at the near plane, 0 where nothing is");
+    for (const Target& target : targets) table.output(target.port, PortKind::Texture, target.sentence);
+    table.number("divisor", &GBuffer::divisor, 1, 16, "",
+                 "Resolution per axis is that of the frame divided by this");
+    table.number("guard", &GBuffer::guard, 0, 512, "pixels",
+                 "Guard band: extra pixels of the frame on each side");
+    table.flag("jitter", &GBuffer::jitter,
+               "Moves the samples within the pixel from frame to frame (for temporal anti-aliasing)");
+    return table;
+}
+
+Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& demand) const {
+    Declaration declaration;
+    const Extent extent = world.extentOf(view());
+    Step step{.name = "rasterize",
+              .shaders = {"gbuffer/gbuffer.vert", "gbuffer/gbuffer.frag"},
+              .defines = materialDefines(world.facts),
+              .uses = {},
+              .modules = {},
+              .group = {}};
+    const bool empty = world.facts.triangles == 0;
+    bool material = false;
+    for (const Target& target : targets) {
+        if (!demand.reads(target.port)) continue;
+        Output output{.port = target.port, .desc = Desc::texture2D(target.format, extent, view())};
+        if (isConstantZero(target, world.facts)) {
+            output.constant = glm::vec4(0);
+        } else {
+            output.clear = glm::vec4(0);
+            step.defines[target.define] = "1";
+            step.uses.push_back({.port = target.port, .access = Access::Attachment, .write = true});
+            material |= std::string_view(target.define) == "OUT_ALBEDO" ||
+                        std::string_view(target.define) == "OUT_MATERIAL" ||
+                        std::string_view(target.define) == "OUT_EMISSION";
+        }
+        declaration.outputs.push_back(std::move(output));
+    }
+    Output depth{.port = "depth", .desc = Desc::texture2D(Format::D32F, extent, view())};
+    if (empty)
+        depth.constant = glm::vec4(0);
+    else
+        depth.clear = glm::vec4(0);
+    declaration.outputs.push_back(std::move(depth));
+    if (empty) {
+        declaration.leftOut.push_back({"rasterize", "the scene has no triangle"});
+        return declaration;
+    }
+    step.uses.push_back({.port = "depth", .access = Access::Attachment, .write = true});
+    declaration.steps.push_back(std::move(step));
+
+    if (!world.facts.hasMasked)
+        declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
+    if (material && !world.facts.hasTextures)
+        declaration.leftOut.push_back({"texture lookups", "no material has a texture"});
+    if (demand.reads("emission") && !world.facts.hasEmission)
+        declaration.leftOut.push_back({"emission", "no material emits light"});
+    if (demand.reads("motion") && !world.facts.geometryMoves)
+        declaration.leftOut.push_back(
+            {"previous positions", "nothing in the scene moves; motion is the camera's alone"});
+
+    declaration.depends = Causes::Camera | Causes::Cut | Causes::Geometry | Causes::Transforms |
+                          Causes::Materials | Causes::Properties | Causes::Size;
+    // Motion of a camera or an object that has just stopped is still that of the last frame: runs one frame
+    // longer, which the executor does for readers of last frame's transforms.
+    if (jitter) declaration.depends |= Causes::Frame;
+    if (demand.reads("motion") && world.facts.geometryMoves) declaration.steps.back().defines["MOVES"] = "1";
+    return declaration;
+}
+
+void GBuffer::execute(const Step&, Commands& commands) {
+    commands.drawScene({}, {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided, TriangleClass::Masked,
+                            TriangleClass::MaskedDoubleSided});
+}
+
+} // namespace kestrel

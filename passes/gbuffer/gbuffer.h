@@ -1,0 +1,24 @@
+// The G-buffer: what the camera sees first, one texture a quantity; only what somebody reads is made.
+#pragma once
+#include "graph/registry.h"
+
+namespace kestrel {
+
+class GBuffer final : public Pass {
+public:
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+    void execute(const Step& step, Commands& commands) override;
+
+    int divisor = 1;
+    int guard = 0;
+    bool jitter = false;
+
+private:
+    [[nodiscard]] View view() const {
+        return {.camera = 0, .divisor = divisor, .guard = guard, .jitter = jitter};
+    }
+};
+
+} // namespace kestrel
