@@ -16,9 +16,14 @@ struct Entry {
 };
 
 constexpr Entry entries[] = {
+    {"cornell", "The Cornell box: red and green walls, two boxes, a rectangle area light",
+     builtin::makeCornell},
     {"blob", "A displaced sphere of 70k triangles in the shape of a hare, on a round floor",
      builtin::makeBlob},
-    {"tower", "A spiral staircase of 77k triangles: many overlapping occluders", builtin::makeTower},
+    {"tower", "A spiral staircase of 79k triangles: many overlapping occluders", builtin::makeTower},
+    {"hall", "A colonnade with arches, hangings and a vault, over 200k triangles; spot light, camera path",
+     builtin::makeHall},
+    {"lattice", "Sixty layers of bars: up to about 100 surfaces along a view ray", builtin::makeLattice},
 };
 
 std::vector<std::string> names() {
