@@ -8,7 +8,8 @@
 // A consumer fills a Ray, calls aim once, then traces. Everything is in render space.
 #include "lib/surface.glsl"
 
-const float rayInfinity = uintBitsToFloat(0x7f800000u);
+// A macro: glslang takes no function call for the initialiser of a constant.
+#define rayInfinity uintBitsToFloat(0x7f800000u)
 
 struct Ray {
     vec3 origin;    // on a surface: the surface point itself; each tracer moves it off by its own measure
