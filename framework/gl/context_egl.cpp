@@ -101,6 +101,9 @@ public:
     EglContext& operator=(const EglContext&) = delete;
 
     void makeCurrent() override {
+        // Bound anew even if EGL believes it to be current: OSMesa shares the thread's dispatch table with it
+        // and changes it behind EGL's back.
+        egl_.eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         if (egl_.eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE)
             throw MachineError(
                 fmt::format("eglMakeCurrent without a surface failed (error 0x{:x}): the driver lacks "

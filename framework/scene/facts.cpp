@@ -2,6 +2,7 @@
 #include "scene/animation.h"
 #include "scene/deform.h"
 #include "scene/geometry.h"
+#include "scene/texture_arrays.h"
 #include "scene/timeline_bounds.h"
 #include <cmath>
 
@@ -101,6 +102,9 @@ SceneFacts gatherFacts(const Scene& scene) {
         facts.cameraMoves |= camera.node >= 0 && moving[static_cast<size_t>(camera.node)];
     facts.materials = static_cast<std::uint32_t>(scene.materials.size());
     facts.images = static_cast<std::uint32_t>(scene.images.size());
+    facts.colourTextureArrays =
+        static_cast<std::uint32_t>(textureArrays(scene, TextureRole::Colour).arrays.size());
+    facts.dataTextureArrays = static_cast<std::uint32_t>(textureArrays(scene, TextureRole::Data).arrays.size());
     facts.duration = scene.duration();
     measure(scene, facts);
     return facts;

@@ -15,6 +15,7 @@ struct SceneFacts {
     bool hasDoubleSided = false;
     bool hasSingleSided = false;
     bool hasTextures = false; // any texture that a used material refers to
+    std::uint32_t colourTextureArrays = 0, dataTextureArrays = 0; // textureArrays()
     bool hasNormalMaps = false;
     bool hasVertexColours = false;
     bool hasEmission = false;

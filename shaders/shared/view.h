@@ -4,8 +4,6 @@
 
 SHARED_BEGIN
 
-SHARED_BEGIN
-
 // The reserved uniform block `Frame`, bound to every program that declares it.
 struct FrameData {
     uvec2 size;     // of the frame, pixels
@@ -35,7 +33,5 @@ struct ViewData {
     float nearPlane;
     float farPlane;          // 0: infinite
 };
-
-SHARED_END
 
 SHARED_END

@@ -1,0 +1,262 @@
+#include "draw/gpu_scene.h"
+#include "core/check.h"
+#include "core/error.h"
+#include "draw/draw_calls.h"
+#include "gl/loader.h"
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace kestrel {
+
+using shared::LightRecord;
+using shared::MaterialRecord;
+using shared::TextureRecord;
+using shared::VertexRecord;
+
+// The std430 layouts of shared/scene.h.
+static_assert(sizeof(TextureRecord) == 48 && offsetof(TextureRecord, source) == 32);
+static_assert(sizeof(MaterialRecord) == 64 + 4 * 48 && offsetof(MaterialRecord, baseColourTexture) == 64);
+static_assert(sizeof(VertexRecord) == 64 && sizeof(VertexRecord) == shared::vertexRecordTexels * 16);
+static_assert(sizeof(LightRecord) == 96 && offsetof(LightRecord, halfSize) == 80);
+static_assert(shared::lightKindSphere == static_cast<std::uint32_t>(LightKind::Sphere));
+
+namespace {
+
+// Where lib/vertex.glsl expects the vertex inputs.
+namespace location {
+constexpr unsigned int position = 0, normal = 1, tangent = 2, texCoord = 3, texCoord1 = 4, colour = 5,
+                       previousPosition = 6;
+} // namespace location
+
+MaterialRecord recordOf(const Scene& scene, const Material& material, const SceneTextures& colours,
+                        const SceneTextures& data) {
+    MaterialRecord record{};
+    record.baseColour = material.baseColour;
+    record.emission = material.emission;
+    record.metallic = material.metallic;
+    record.roughness = material.roughness;
+    record.normalScale = material.normalScale;
+    record.transmission = material.transmission;
+    record.ior = material.ior;
+    const bool masked = material.alphaMode != AlphaMode::Opaque;
+    record.alphaCutoff = masked ? material.alphaCutoff : 0;
+    if (masked) record.flags |= shared::materialFlagMasked;
+    if (material.alphaMode == AlphaMode::Blend) record.flags |= shared::materialFlagBlend;
+    if (material.doubleSided) record.flags |= shared::materialFlagDoubleSided;
+    if (material.unlit) record.flags |= shared::materialFlagUnlit;
+    record.baseColourTexture = colours.record(scene, material.baseColourTexture);
+    record.emissionTexture = colours.record(scene, material.emissionTexture);
+    record.metallicRoughnessTexture = data.record(scene, material.metallicRoughnessTexture);
+    record.normalTexture = data.record(scene, material.normalTexture);
+    return record;
+}
+
+LightRecord recordOf(const LightState& light) {
+    LightRecord record{};
+    record.kind = static_cast<std::uint32_t>(light.kind);
+    record.position = light.position;
+    record.direction = light.direction;
+    record.tangent = light.tangent;
+    record.bitangent = light.bitangent;
+    record.intensity = light.intensity;
+    record.range = light.range;
+    record.cosInnerCone = std::cos(light.innerCone);
+    record.cosOuterCone = std::cos(light.outerCone);
+    record.halfSize = light.halfSize;
+    return record;
+}
+
+template<class T>
+std::span<const std::byte> bytesOf(const std::vector<T>& items) {
+    return std::as_bytes(std::span(items));
+}
+
+// Keeps the buffer where its size is right. True if it is a new one.
+bool store(gl::Buffer& buffer, std::span<const std::byte> bytes, const char* label) {
+    const bool fresh = !buffer || buffer.bytes() != bytes.size();
+    if (fresh) buffer = gl::Buffer(bytes.size(), label);
+    buffer.upload(bytes);
+    return fresh;
+}
+
+// One texel a position.
+bool storePositions(gl::Buffer& buffer, const std::vector<glm::vec3>& positions, const char* label) {
+    std::vector<glm::vec4> texels(positions.size());
+    std::transform(positions.begin(), positions.end(), texels.begin(),
+                   [](const glm::vec3& position) { return glm::vec4(position, 1); });
+    return store(buffer, bytesOf(texels), label);
+}
+
+bool storeVertices(gl::Buffer& buffer, const std::vector<VertexAttributes>& attributes) {
+    std::vector<VertexRecord> records(attributes.size());
+    std::transform(attributes.begin(), attributes.end(), records.begin(), [](const VertexAttributes& vertex) {
+        return VertexRecord{glm::vec4(vertex.normal, 0), vertex.tangent, vertex.texCoord, vertex.texCoord1,
+                            vertex.colour};
+    });
+    return store(buffer, bytesOf(records), "scene vertices");
+}
+
+constexpr std::string_view colourTextures = "scene_colour_textures";
+constexpr std::string_view dataTextures = "scene_data_textures";
+constexpr std::string_view firstTriangle = "scene_first_triangle";
+constexpr std::string_view materialsBlock = "Materials";
+constexpr std::string_view lightsBlock = "Lights";
+
+void bindBlock(const gl::Program& program, std::string_view name, const gl::Buffer& buffer) {
+    const auto slot = program.slot(name);
+    if (!slot) return;
+    // Beyond the limit a driver may bind a part in silence.
+    GLint64 most = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    if (buffer.bytes() > static_cast<std::uint64_t>(most))
+        throw MachineError(fmt::format("block '{}' of the scene has {} bytes, the device takes {}", name,
+                                       buffer.bytes(), most));
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, slot->unit, buffer.name());
+}
+
+void bindTexels(const gl::Program& program, std::string_view name, const gl::Buffer& buffer, Format format) {
+    const auto slot = program.slot(name);
+    if (!slot) return;
+    const gl::Name view = buffer.texelView(format);
+    if (slot->kind == gl::Program::Slot::Kind::Image) {
+        glBindImageTexture(slot->unit, view, 0, GL_FALSE, 0, GL_READ_ONLY, gl::glFormat(format).internal);
+    } else {
+        glBindTextureUnit(slot->unit, view);
+        glBindSampler(slot->unit, 0);
+    }
+}
+
+} // namespace
+
+GpuScene::GpuScene(const Scene& scene)
+    : colours_(scene, TextureRole::Colour)
+    , data_(scene, TextureRole::Data) {
+    std::vector<MaterialRecord> records;
+    for (const Material& material : flattenedMaterials(scene))
+        records.push_back(recordOf(scene, material, colours_, data_));
+    store(materials_, bytesOf(records), "scene materials");
+    setLights({});
+    update(Geometry{});
+    hasTopology_ = false;
+}
+
+void GpuScene::update(const Geometry& geometry) {
+    KESTREL_CHECK_EQ(geometry.positions.size(), geometry.attributes.size());
+    bool fresh = storePositions(positions_, geometry.positions, "scene positions");
+    fresh |= storeVertices(vertices_, geometry.attributes);
+    const bool moves = !geometry.previousPositions.empty();
+    if (moves) {
+        KESTREL_CHECK_EQ(geometry.previousPositions.size(), geometry.positions.size());
+        fresh |= storePositions(previousPositions_, geometry.previousPositions, "scene previous positions");
+    }
+    fresh |= moves != moves_;
+    moves_ = moves;
+    if (fresh || !hasTopology_) {
+        uploadTopology(geometry);
+        linkVertexArray();
+    }
+}
+
+void GpuScene::uploadTopology(const Geometry& geometry) {
+    triangleCount_ = geometry.triangleCount();
+    KESTREL_CHECK_EQ(geometry.materials.size(), size_t{triangleCount_});
+    std::vector<glm::uvec4> triangles(triangleCount_);
+    for (size_t i = 0; i < triangles.size(); ++i)
+        triangles[i] = {geometry.indices[3 * i], geometry.indices[3 * i + 1], geometry.indices[3 * i + 2],
+                        geometry.materials[i]};
+    store(indices_, bytesOf(geometry.indices), "scene indices");
+    store(triangles_, bytesOf(triangles), "scene triangles");
+    std::copy(std::begin(geometry.ranges), std::end(geometry.ranges), std::begin(ranges_));
+    hasTopology_ = true;
+}
+
+void GpuScene::linkVertexArray() {
+    vertexArray_ = gl::VertexArray("scene");
+    vertexArray_.setIndices(indices_);
+    constexpr std::uint32_t texel = 16;
+    vertexArray_.setAttribute(location::position, positions_, 3, texel, 0);
+    vertexArray_.setAttribute(location::previousPosition, moves_ ? previousPositions_ : positions_, 3, texel,
+                              0);
+    const auto attribute = [this](unsigned int at, int components, size_t offset) {
+        vertexArray_.setAttribute(at, vertices_, components, sizeof(VertexRecord),
+                                  static_cast<std::uint32_t>(offset));
+    };
+    attribute(location::normal, 3, offsetof(VertexRecord, normal));
+    attribute(location::tangent, 4, offsetof(VertexRecord, tangent));
+    attribute(location::texCoord, 2, offsetof(VertexRecord, texCoord));
+    attribute(location::texCoord1, 2, offsetof(VertexRecord, texCoord1));
+    attribute(location::colour, 4, offsetof(VertexRecord, colour));
+}
+
+void GpuScene::setLights(const std::vector<LightState>& lights) {
+    if (lights_ && lights == uploadedLights_) return;
+    // The block: the count, filled up to 16 bytes, then the records.
+    std::vector<std::byte> bytes(16 + lights.size() * sizeof(LightRecord));
+    const auto count = static_cast<std::uint32_t>(lights.size());
+    std::memcpy(bytes.data(), &count, sizeof count);
+    for (size_t i = 0; i < lights.size(); ++i) {
+        const LightRecord record = recordOf(lights[i]);
+        std::memcpy(bytes.data() + 16 + i * sizeof record, &record, sizeof record);
+    }
+    store(lights_, bytes, "scene lights");
+    uploadedLights_ = lights;
+}
+
+std::vector<GpuScene::TexelSource> GpuScene::texelSources() const {
+    return {{"scene_positions", "ScenePositions", positions_, Format::RGBA32F},
+            {"scene_previous_positions", "ScenePreviousPositions", moves_ ? previousPositions_ : positions_,
+             Format::RGBA32F},
+            {"scene_vertices", "SceneVertices", vertices_, Format::RGBA32F},
+            {"scene_triangles", "SceneTriangles", triangles_, Format::RGBA32UI}};
+}
+
+bool GpuScene::reserves(std::string_view name) {
+    constexpr std::string_view names[] = {"scene_positions", "scene_previous_positions",
+                                          "scene_vertices",  "scene_triangles",
+                                          "ScenePositions",  "ScenePreviousPositions",
+                                          "SceneVertices",   "SceneTriangles",
+                                          colourTextures,    dataTextures,
+                                          firstTriangle,     materialsBlock,
+                                          lightsBlock};
+    return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+void GpuScene::bind(const gl::Program& program) const {
+    bindBlock(program, materialsBlock, materials_);
+    bindBlock(program, lightsBlock, lights_);
+    for (const TexelSource& source : texelSources()) {
+        bindBlock(program, source.block, source.buffer);
+        bindTexels(program, source.uniform, source.buffer, source.format);
+    }
+    if (const auto slot = program.slot(colourTextures)) colours_.bind(*slot);
+    if (const auto slot = program.slot(dataTextures)) data_.bind(*slot);
+}
+
+void GpuScene::draw(const DrawState& state, const std::vector<TriangleClass>& classes,
+                    const gl::Program& program) const {
+    applyDrawState(state);
+    glBindVertexArray(vertexArray_.name());
+    const int first = program.uniform(firstTriangle);
+    for (const TriangleClass drawn : classes) {
+        KESTREL_CHECK(drawn < TriangleClass::Count);
+        const Geometry::Range range = ranges_[static_cast<size_t>(drawn)];
+        if (range.count == 0) continue;
+        const bool doubleSided =
+            drawn == TriangleClass::OpaqueDoubleSided || drawn == TriangleClass::MaskedDoubleSided;
+        setCulling(doubleSided ? Cull::None : state.cull);
+        if (first >= 0) glProgramUniform1ui(program.name(), first, range.first);
+        const auto* offset = reinterpret_cast<const void*>(size_t{range.first} * 3 * sizeof(std::uint32_t));
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT, offset);
+    }
+}
+
+std::uint64_t GpuScene::bytes() const {
+    std::uint64_t total = colours_.bytes() + data_.bytes();
+    for (const gl::Buffer* buffer :
+         {&materials_, &lights_, &positions_, &previousPositions_, &vertices_, &indices_, &triangles_})
+        total += buffer->bytes();
+    return total;
+}
+
+} // namespace kestrel

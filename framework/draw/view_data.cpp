@@ -1,0 +1,78 @@
+#include "draw/view_data.h"
+#include "core/check.h"
+
+namespace kestrel {
+
+static_assert(sizeof(FrameData) == 48 && offsetof(FrameData, sceneBounds) == 32);
+static_assert(sizeof(ViewData) == 7 * 64 + 48 && offsetof(ViewData, position) == 7 * 64 &&
+              offsetof(ViewData, jitter) == 7 * 64 + 32);
+
+namespace {
+
+// The `index`-th number of the van der Corput sequence of a base, in [0, 1).
+double radicalInverse(std::uint32_t index, std::uint32_t base) {
+    double result = 0;
+    double digit = 1.0 / base;
+    for (; index != 0; index /= base, digit /= base) result += digit * (index % base);
+    return result;
+}
+
+// The frame's projection, narrowed or widened to what an image covers, in pixels of the frame from its lower
+// left corner.
+glm::dmat4 projectionOver(const CameraState& camera, const Extent& frame, const glm::dvec2& first,
+                          const glm::dvec2& size) {
+    const glm::dvec2 frameSize(frame.width, frame.height);
+    const glm::dmat4 projection(camera.projection(static_cast<float>(frameSize.x / frameSize.y)));
+    const glm::dvec2 scale = frameSize / size;
+    const glm::dvec2 shift = (frameSize - 2.0 * first) / size - 1.0;
+    // clip.xy' = scale * clip.xy + shift * clip.w
+    glm::dmat4 window(1);
+    window[0][0] = scale.x;
+    window[1][1] = scale.y;
+    window[3][0] = shift.x;
+    window[3][1] = shift.y;
+    return window * projection;
+}
+
+} // namespace
+
+glm::vec2 jitterOf(std::uint32_t index) {
+    const std::uint32_t point = index % jitterPeriod + 1;
+    return {static_cast<float>(radicalInverse(point, 2) - 0.5),
+            static_cast<float>(radicalInverse(point, 3) - 0.5)};
+}
+
+ViewData viewData(const View& view, const Extent& extent, const ViewFrame& frame) {
+    KESTREL_CHECK(view.divisor >= 1 && view.guard >= 0);
+    KESTREL_CHECK(extent.width >= 1 && extent.height >= 1 && frame.size.width >= 1 && frame.size.height >= 1);
+    const int guard = view.guard / view.divisor;
+    const glm::dvec2 first(-double(guard) * view.divisor);
+    const glm::dvec2 size = glm::dvec2(extent.width, extent.height) * double(view.divisor);
+    const glm::vec2 jitter = view.jitter ? jitterOf(frame.index) : glm::vec2(0);
+
+    const glm::dmat4 eye(frame.camera.view);
+    // A sample that stands jitter pixels right of the centre sees the image moved jitter pixels to the left.
+    const glm::dmat4 projection =
+        projectionOver(frame.camera, frame.size, first + glm::dvec2(jitter) * double(view.divisor), size);
+    const glm::dmat4 before(frame.previousCamera.view);
+
+    ViewData data{};
+    data.view = frame.camera.view;
+    data.projection = glm::mat4(projection);
+    data.viewProjection = glm::mat4(projection * eye);
+    data.inverseView = glm::mat4(glm::inverse(eye));
+    data.inverseProjection = glm::mat4(glm::inverse(projection));
+    data.inverseViewProjection = glm::mat4(glm::inverse(projection * eye));
+    data.previousViewProjection =
+        glm::mat4(projectionOver(frame.previousCamera, frame.size, first, size) * before);
+    data.position = glm::vec4(frame.camera.position, frame.camera.orthographic ? 1 : 0);
+    data.size = {extent.width, extent.height};
+    data.guard = static_cast<std::uint32_t>(guard);
+    data.divisor = static_cast<std::uint32_t>(view.divisor);
+    data.jitter = jitter;
+    data.nearPlane = frame.camera.nearPlane;
+    data.farPlane = frame.camera.farPlane > 0 ? frame.camera.farPlane : 0;
+    return data;
+}
+
+} // namespace kestrel
