@@ -32,10 +32,12 @@ public:
         Desc desc;
         std::optional<glm::vec4> constant; // the same value everywhere; the resource holds it too
         Causes causes = Causes::All;       // for which it can change over the timeline
+        friend bool operator==(const Input&, const Input&) = default;
     };
     [[nodiscard]] bool connected(std::string_view port) const { return inputs_.find(port) != inputs_.end(); }
     [[nodiscard]] const Input& operator[](std::string_view port) const; // check: connected
     void set(std::string port, Input input) { inputs_.insert_or_assign(std::move(port), std::move(input)); }
+    friend bool operator==(const Inputs&, const Inputs&) = default;
 
 private:
     std::map<std::string, Input, std::less<>> inputs_;
@@ -68,8 +70,9 @@ private:
 // GLSL names: a sampler or image is called as its port (`uniform sampler2D depth`), a block as its port with
 // a capital letter and without underscores (`buffer RayBuffer` for port "ray_buffer"). In a module file both
 // are wrapped in M(). With `previous` (last frame's content) the name gets "previous_" or "Previous" in
-// front. A fragment output is called "out_" + port. A uniform block called <Block name>View, as `DepthView`,
-// receives the port's ViewData (shared/view.h).
+// front. Where a step reads a texture or texel buffer by one use and writes it by another (two mips, say),
+// the image that is written is called port + "_out". A fragment output is called "out_" + port. A uniform
+// block called <Block name>View, as `DepthView`, receives the port's ViewData (shared/view.h).
 struct Use {
     std::string port;
     Access access = Access::Fetch;

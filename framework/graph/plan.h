@@ -28,7 +28,7 @@ struct PlanResource {
     PortRef port; // its producer
     Desc desc;
     std::optional<glm::vec4> clear, constant;
-    bool transient = false; // can change every frame, so it may share an object with another lifetime
+    bool transient = false; // made and read in every frame, so it may share an object with another lifetime
     bool history = false; // somebody reads last frame's content: two objects that swap when the producer runs
     int object = -1;      // index into Plan::objects (of a history: the first of two)
     int firstStep = 0, lastStep = 0; // lifetime within a frame; whole frame if not transient
@@ -50,6 +50,14 @@ struct PlanBinding {
     int mip = -1;
 };
 
+// A uniform block that receives the ViewData of an image (shared/view.h), if the program declares it.
+struct PlanView {
+    std::string name; // block name in the program, module prefix included: "DepthView", "tracer_DepthView"
+    View view;
+    Extent extent; // of the image, guard band included
+};
+
+// Before a step, in this order: its barrier, its copies, the clears of its pass (first step only).
 struct PlanStep {
     int pass = -1; // index into Plan::passes
     Step step;     // as declared
@@ -58,6 +66,7 @@ struct PlanStep {
     Barrier barrier = Barrier::None;         // before the step
     std::vector<std::pair<int, int>> copies; // resources copied before the step (from, to): in-place updates
                                              // with another reader
+    std::vector<PlanView> views;             // of every texture port of the pass and of its modules
 };
 
 struct PlanPass {
@@ -65,8 +74,10 @@ struct PlanPass {
     std::shared_ptr<Pass> instance;
     Causes depends = Causes::None;
     bool always = false;
-    int firstStep = 0, stepCount = 0;
-    std::vector<int> inputs;          // passes whose causes this one inherits (also through modules)
+    bool everyFrame =
+        false; // its steps surely run in every frame (Frame among the possible causes, or always)
+    int firstStep = 0, stepCount = 0; // a pass that only provides modules has no steps
+    std::vector<int> inputs;          // passes whose causes make the steps run (also through modules)
     std::map<std::string, int> ports; // port -> resource (inputs too, resolved to their producer)
     std::map<std::string, std::vector<int>>
         inputPasses;                   // input port -> producing passes (transitively for modules)
@@ -74,8 +85,9 @@ struct PlanPass {
 };
 
 struct PlanOutput {
-    PortRef port; // as the graph asks
-    int resource = -1;
+    PortRef port;         // as the graph asks
+    int resource = -1;    // -1: a preview that is not made here (Plan::leftOut says why)
+    bool preview = false; // asked for by CompileOptions::previews only
 };
 
 struct MemoryReport {
@@ -97,7 +109,10 @@ struct Plan {
 };
 
 struct CompileOptions {
-    bool keepAll = false; // nothing is left out: every pass of the graph runs with every demand it can bear
+    // Nothing is left out: every pass of the graph runs with every demand it can bear, declares with facts
+    // that promise nothing (masked, moving, textured: all of it may occur; counts stay true), and reads
+    // constants as images.
+    bool keepAll = false;
     bool shareMemory = true;
     std::vector<PortRef> previews; // further ports that somebody wants to see
 };
@@ -106,6 +121,9 @@ struct CompileOptions {
 // state.
 using PassSet = std::map<std::string, std::shared_ptr<Pass>>;
 PassSet makePasses(const Graph& graph, const Registry& registry);
+
+// Sets every property: to what the document gives, else to its default. The document must be valid.
+void setProperties(Pass& pass, const PassType& type, const GraphPass& document);
 
 // Compiles in named stages (see compile.cpp). The graph must be valid. Throws InputError with every problem
 // that the declarations report, with the place of the pass in the graph file.

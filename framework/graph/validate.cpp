@@ -103,6 +103,7 @@ private:
         if (from != nullptr && to != nullptr && from->kind != to->kind)
             note(edge.where, fmt::format("a {} cannot feed a {} port: '{}' -> '{}'", portKindName(from->kind),
                                          portKindName(to->kind), edge.from.text(), edge.to.text()));
+        if (from != nullptr && to != nullptr) sound_.push_back(&edge);
         const auto [first, fresh] = feeds_.try_emplace(edge.to, &edge);
         if (!fresh)
             note(edge.where, fmt::format("the input '{}' is connected twice ('{}' feeds it already)",
@@ -133,9 +134,7 @@ private:
     // ---- cycles: depth first along the edges; the stack is the path (explicit, as graphs may be deep)
     void checkCycles() {
         std::unordered_map<std::string, std::vector<const GraphEdge*>> leaving;
-        for (const GraphEdge& edge : graph_.edges)
-            if (find(edge.from.pass) != nullptr && find(edge.to.pass) != nullptr)
-                leaving[edge.from.pass].push_back(&edge);
+        for (const GraphEdge* edge : sound_) leaving[edge->from.pass].push_back(edge);
         enum class Mark { Fresh, Open, Done };
         std::unordered_map<std::string, Mark> marks;
         struct Frame {
@@ -184,6 +183,7 @@ private:
     const Registry& registry_;
     std::unordered_map<std::string, const GraphPass*> byName_;
     std::map<PortRef, const GraphEdge*> feeds_;
+    std::vector<const GraphEdge*> sound_; // from an output to an input that exist
     std::vector<Problem> problems_;
 };
 

@@ -1,0 +1,185 @@
+// Compiler stage: shader variants, and the names by which resources are bound in them.
+#include "graph/network.h"
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+
+namespace kestrel::compiler {
+namespace {
+
+// "ray_buffer" -> "RayBuffer"
+std::string blockName(const std::string& port) {
+    std::string name;
+    bool capital = true;
+    for (const char letter : port) {
+        if (letter == '_') {
+            capital = true;
+            continue;
+        }
+        name += capital ? static_cast<char>(std::toupper(static_cast<unsigned char>(letter))) : letter;
+        capital = false;
+    }
+    return name;
+}
+
+bool isTexel(Access access) { return access == Access::Fetch || access == Access::Image; }
+
+// Whether the same step or module reads this use's port as texels by another use.
+bool readBeside(const std::vector<Use>& uses, const Use& use) {
+    return use.write && use.access == Access::Image &&
+           std::any_of(uses.begin(), uses.end(), [&](const Use& other) {
+               return !other.write && isTexel(other.access) && other.port == use.port &&
+                      other.previous == use.previous;
+           });
+}
+
+// The resource that `port` of a node stands for: its own output, or its input's producer.
+std::optional<Source> sourceOf(const Network& network, int node, const std::string& port) {
+    if (isInput(network.at(node), port)) return originOfInput(network, node, port);
+    return origin(network, {node, port});
+}
+
+void bindUses(const Network& network, int node, const std::vector<Use>& uses, const std::string& prefix,
+              std::vector<BoundUse>& bound) {
+    for (const Use& use : uses) {
+        const auto source = sourceOf(network, node, use.port);
+        if (!source) continue;
+        const Output* output = knownOutput(network.at(source->node), source->port);
+        const ResourceKind kind = output == nullptr ? ResourceKind::Texture2D : output->desc.kind;
+        bound.push_back({glslName(prefix, use, kind, readBeside(uses, use)),
+                         prefix.empty() ? use.port : std::string(), *source, use});
+    }
+}
+
+// The module that stands behind an input, with the node that provides it.
+struct Provider {
+    int node;
+    const Module* module;
+};
+std::optional<Provider> providerOf(const Network& network, int node, const std::string& input) {
+    const auto source = originOfInput(network, node, input);
+    if (!source) return {};
+    const Module* module = findModule(network.at(source->node).real, source->port);
+    if (module == nullptr) return {};
+    return Provider{source->node, module};
+}
+
+void bindModules(const Network& network, int node, const std::vector<ModuleUse>& modules,
+                 const std::string& prefix, std::vector<BoundUse>& bound) {
+    for (const ModuleUse& use : modules) {
+        const auto provider = providerOf(network, node, use.port);
+        if (!provider) continue;
+        const std::string inner = prefix + use.port + "_";
+        bindUses(network, provider->node, provider->module->uses, inner, bound);
+        bindModules(network, provider->node, provider->module->modules, inner, bound);
+    }
+}
+
+// What a consumer takes reaches the module as defines. A module inside a module is asked by the inner one,
+// but may snap only if the outermost consumer bears it.
+ModuleInstance instanceOf(const Network& network, const Provider& provider, Bits taken) {
+    ModuleInstance instance{provider.module->shader, provider.module->defines, {}};
+    constexpr std::pair<Bits, const char*> defines[] = {{takes::AnyHit, "TAKES_ANY"},
+                                                        {takes::ClosestHit, "TAKES_CLOSEST"},
+                                                        {takes::Surface, "TAKES_SURFACE"},
+                                                        {takes::BearsSnap, "TAKES_SNAP"},
+                                                        {takes::AllHits, "TAKES_ALL"}};
+    for (const auto& [bit, name] : defines)
+        if ((taken & bit) != 0) instance.defines[name] = "1";
+    for (const ModuleUse& use : provider.module->modules) {
+        const auto inner = providerOf(network, provider.node, use.port);
+        if (!inner) continue;
+        const Bits innerTakes = (taken & takes::BearsSnap) != 0 ? use.takes : use.takes & ~takes::BearsSnap;
+        instance.modules[use.port] = instanceOf(network, *inner, innerTakes);
+    }
+    return instance;
+}
+
+void addViews(const Network& network, int node, const std::string& prefix, std::vector<PlanView>& views) {
+    const Node& at = network.at(node);
+    for (const PortInfo& port : at.type->ports) {
+        if (port.kind != PortKind::Texture) continue;
+        const Desc* desc = nullptr;
+        if (port.direction == PortDirection::Input) {
+            if (at.inputs.connected(port.name)) desc = &at.inputs[port.name].desc;
+        } else if (const Output* output = findOutput(at.real, port.name)) {
+            desc = &output->desc;
+        }
+        if (desc != nullptr)
+            views.push_back({prefix + blockName(port.name) + "View", desc->view, desc->extent});
+    }
+}
+
+void addViewsOfModules(const Network& network, int node, const std::vector<ModuleUse>& modules,
+                       const std::string& prefix, std::vector<PlanView>& views) {
+    for (const ModuleUse& use : modules) {
+        const auto provider = providerOf(network, node, use.port);
+        if (!provider) continue;
+        const std::string inner = prefix + use.port + "_";
+        addViews(network, provider->node, inner, views);
+        addViewsOfModules(network, provider->node, provider->module->modules, inner, views);
+    }
+}
+
+void addProducers(const Network& network, int node, const std::string& input, std::set<int>& producers) {
+    const auto source = originOfInput(network, node, input);
+    if (!source) return;
+    producers.insert(source->node);
+    const Node& producer = network.at(source->node);
+    const Module* module = findModule(producer.real, source->port);
+    if (module == nullptr) return;
+    for (const Use& use : module->uses)
+        if (isInput(producer, use.port)) addProducers(network, source->node, use.port, producers);
+    for (const ModuleUse& use : module->modules) addProducers(network, source->node, use.port, producers);
+}
+
+} // namespace
+
+std::string glslName(const std::string& prefix, const Use& use, ResourceKind kind, bool readBeside) {
+    switch (use.access) {
+    case Access::Fetch:
+    case Access::Image:
+        return prefix + (use.previous ? "previous_" : "") + use.port + (readBeside ? "_out" : "");
+    case Access::Storage:
+    case Access::Uniform:
+        return prefix + (use.previous ? "Previous" : "") + blockName(use.port);
+    case Access::Attachment:
+        return kind == ResourceKind::Buffer ? std::string() : "out_" + use.port;
+    case Access::Vertex:
+    case Access::Indirect:
+    case Access::Copy:
+    case Access::Host:
+        break;
+    }
+    return {};
+}
+
+std::vector<BoundUse> boundUses(const Network& network, int node, const Step& step) {
+    std::vector<BoundUse> bound;
+    bindUses(network, node, step.uses, "", bound);
+    bindModules(network, node, step.modules, "", bound);
+    return bound;
+}
+
+ProgramRequest programOf(const Network& network, int node, const Step& step) {
+    ProgramRequest request{step.shaders, step.defines, {}};
+    for (const ModuleUse& use : step.modules)
+        if (const auto provider = providerOf(network, node, use.port))
+            request.modules[use.port] = instanceOf(network, *provider, use.takes);
+    return request;
+}
+
+std::vector<PlanView> viewsOf(const Network& network, int node, const Step& step) {
+    std::vector<PlanView> views;
+    addViews(network, node, "", views);
+    addViewsOfModules(network, node, step.modules, "", views);
+    return views;
+}
+
+std::set<int> producersBehind(const Network& network, int node, const std::string& input) {
+    std::set<int> producers;
+    addProducers(network, node, input, producers);
+    return producers;
+}
+
+} // namespace kestrel::compiler
