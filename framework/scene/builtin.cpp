@@ -23,6 +23,10 @@ constexpr Entry entries[] = {
     {"tower", "A spiral staircase of 79k triangles: many overlapping occluders", builtin::makeTower},
     {"hall", "A colonnade with arches, hangings and a vault, over 200k triangles; spot light, camera path",
      builtin::makeHall},
+    {"grove", "Trees and grass of alpha-masked cards, over 100k triangles, in the sun", builtin::makeGrove},
+    {"morph", "A creature in a room, deformed by animated morph targets; area light", builtin::makeMorph},
+    {"skinned", "A four-legged creature that walks on the spot: an animated skin", builtin::makeSkinned},
+    {"pool", "A tiled bath with water, glass and mirrors; area light and point light", builtin::makePool},
     {"lattice", "Sixty layers of bars: up to about 100 surfaces along a view ray", builtin::makeLattice},
 };
 
