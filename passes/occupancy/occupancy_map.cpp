@@ -1,0 +1,230 @@
+#include "occupancy_map.h"
+#include "draw/material_defines.h"
+#include "execute/commands.h"
+#include "grid.h"
+#include "shared/random.h"
+#include <algorithm>
+#include <fmt/format.h>
+#include <iterator>
+
+namespace kestrel {
+namespace {
+
+constexpr const char* axisPorts[3] = {"columns_x", "columns_y", "columns_z"};
+constexpr const char* highAxisPorts[3] = {"columns_x_high", "columns_y_high", "columns_z_high"};
+
+// The indirect command and the count in front of the list of large triangles (occupancy/exact.comp).
+constexpr std::uint64_t largeHeader = 16;
+
+bool makesColumns(OccupancyMethod method) {
+    return method == OccupancyMethod::LogicOp || method == OccupancyMethod::Interlock ||
+           method == OccupancyMethod::FramebufferFetch;
+}
+
+// The extension that a method cannot do without; nullptr: none.
+const char* neededExtension(OccupancyMethod method) {
+    if (method == OccupancyMethod::Interlock) return "GL_ARB_fragment_shader_interlock";
+    if (method == OccupancyMethod::FramebufferFetch) return "GL_EXT_shader_framebuffer_fetch";
+    return nullptr;
+}
+
+// Materials matter to the map only where an alpha test makes holes.
+Defines definesFor(const World& world, int resolution) {
+    Defines defines = world.facts.hasMasked ? materialDefines(world.facts) : Defines{};
+    defines["RESOLUTION"] = std::to_string(resolution);
+    return defines;
+}
+
+const std::vector<TriangleClass> allClasses = {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided,
+                                               TriangleClass::Masked, TriangleClass::MaskedDoubleSided};
+
+} // namespace
+
+PassType OccupancyMap::type() {
+    Describe<OccupancyMap> table("OccupancyMap",
+                                 "One bit a cell of a cube around the scene: is there a surface?");
+    table.output("occupancy", PortKind::Buffer, "The bits, 32 cells along z a word")
+        .output("grid", PortKind::Buffer, "Where the cells lie");
+    for (int axis = 0; axis < 3; ++axis)
+        table
+            .internal(axisPorts[axis], PortKind::Texture,
+                      fmt::format("Columns of cells along {}: 128 bits a texel", "xyz"[axis]))
+            .internal(highAxisPorts[axis], PortKind::Texture,
+                      fmt::format("Cells 128 to 255 of the columns along {}", "xyz"[axis]));
+    table.internal("large", PortKind::Buffer, "Triangles over many cells, and the work groups that mark them")
+        .number("resolution", &OccupancyMap::resolution, 32, 256, "cells",
+                "Cells along an edge: 32, 64, 128 or 256")
+        .choice("method", &OccupancyMap::method,
+                {"three_axis", "logic_op", "interlock", "framebuffer_fetch", "dominant_axis", "exact"},
+                "How cells are marked: rasterized along three axes (four ways that give the same bits), each "
+                "triangle "
+                "along one, or exactly")
+        .flag("jitter", &OccupancyMap::jitter,
+              "Shifts the cells by up to half of one, differently every frame");
+    return table;
+}
+
+Declaration OccupancyMap::declare(const World& world, const Inputs&, const Demand& demand) const {
+    Declaration declaration;
+    if (!isOccupancyResolution(resolution)) {
+        declaration.problems.push_back(
+            {"", fmt::format("resolution must be 32, 64, 128 or 256, not {}", resolution)});
+        return declaration;
+    }
+    const char* extension = neededExtension(method);
+    if (extension && !world.capabilities.has(extension)) {
+        declaration.problems.push_back(
+            {"", fmt::format("this method needs {}, which this context lacks", extension)});
+        return declaration;
+    }
+    const bool empty = world.facts.triangles == 0 || !hasExtent(world.facts.sphere, resolution);
+    declaration.outputs = {
+        {.port = "occupancy", .desc = Desc::buffer(occupancyBytes(resolution), Format::R32UI)},
+        {.port = "grid", .desc = Desc::buffer(sizeof(shared::OccupancyGrid))}};
+    declaration.steps = {{.name = "grid",
+                          .shaders = {},
+                          .defines = {},
+                          .uses = {{.port = "grid", .access = Access::Copy, .write = true}},
+                          .modules = {},
+                          .group = "generation"}};
+    if (jitter) declaration.depends |= Causes::Frame;
+    Output& occupancy = declaration.outputs.front();
+    if (empty) {
+        occupancy.constant = glm::vec4(0);
+        declaration.leftOut.push_back({"marking of cells", "the scene has no triangle with an extent"});
+        return declaration;
+    }
+    if (!demand.reads("occupancy")) return declaration;
+
+    declaration.depends |= Causes::Geometry | Causes::Transforms;
+    if (world.facts.hasMasked)
+        declaration.depends |= Causes::Materials;
+    else
+        declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
+    if (!makesColumns(method)) occupancy.clear = glm::vec4(0);
+    std::vector<Step> steps = method == OccupancyMethod::Exact ? exactSteps(world)
+                              : makesColumns(method)           ? columnSteps(world)
+                                                               : rasterSteps(world);
+    for (const Step& step : steps) declareInternals(step, world, declaration);
+    std::move(steps.begin(), steps.end(), std::back_inserter(declaration.steps));
+    return declaration;
+}
+
+// The columns and lists that a step writes first.
+void OccupancyMap::declareInternals(const Step& step, const World& world, Declaration& declaration) const {
+    const Extent face{static_cast<std::uint32_t>(resolution), static_cast<std::uint32_t>(resolution), 1};
+    for (const Use& use : step.uses) {
+        if (!use.write || use.port == "occupancy") continue;
+        const Desc desc = use.port == "large" ? Desc::buffer(largeHeader + 4 * world.facts.triangles)
+                                              : Desc::texture2D(Format::RGBA32UI, face);
+        const bool known = std::any_of(declaration.outputs.begin(), declaration.outputs.end(),
+                                       [&](const Output& output) { return output.port == use.port; });
+        if (!known) declaration.outputs.push_back({.port = use.port, .desc = desc, .clear = glm::vec4(0)});
+    }
+}
+
+std::vector<Step> OccupancyMap::rasterSteps(const World& world) const {
+    Step step{.name = "rasterize",
+              .shaders = {"occupancy/raster.vert", "occupancy/raster.frag"},
+              .defines = definesFor(world, resolution),
+              .uses = {{.port = "grid", .access = Access::Uniform},
+                       {.port = "occupancy", .access = Access::Storage, .write = true}},
+              .modules = {},
+              .group = "generation"};
+    step.defines["INTO_MAP"] = "1";
+    if (method == OccupancyMethod::DominantAxis) {
+        step.defines["FACE_BY_TRIANGLE"] = "1";
+        step.shaders.emplace_back("occupancy/raster.geom");
+    }
+    return {step};
+}
+
+std::vector<Step> OccupancyMap::columnSteps(const World& world) const {
+    const bool attachments = method != OccupancyMethod::Interlock;
+    const bool high = resolution > 128;
+    std::vector<Step> steps;
+    Step merge{.name = "merge",
+               .shaders = {"occupancy/merge.comp"},
+               .defines = {{"RESOLUTION", std::to_string(resolution)}},
+               .uses = {{.port = "occupancy", .access = Access::Storage, .write = true}},
+               .modules = {},
+               .group = "generation"};
+    for (int axis = 0; axis < 3; ++axis) {
+        Step step{.name = fmt::format("rasterize_{}", "xyz"[axis]),
+                  .shaders = {"occupancy/raster.vert", "occupancy/raster.frag"},
+                  .defines = definesFor(world, resolution),
+                  .uses = {{.port = "grid", .access = Access::Uniform}},
+                  .modules = {},
+                  .group = "generation"};
+        step.defines["INTO_COLUMNS"] = "1";
+        if (method == OccupancyMethod::Interlock) step.defines["BY_INTERLOCK"] = "1";
+        if (method == OccupancyMethod::FramebufferFetch) step.defines["BY_FETCH"] = "1";
+        for (int half = 0; half < (high ? 2 : 1); ++half) {
+            const std::string port = half == 0 ? axisPorts[axis] : highAxisPorts[axis];
+            step.uses.push_back(
+                {.port = port, .access = attachments ? Access::Attachment : Access::Image, .write = true});
+            step.defines[half == 0 ? "COLUMNS_LOW" : "COLUMNS_HIGH"] = (attachments ? "out_" : "") + port;
+            merge.uses.push_back({.port = port, .access = Access::Image});
+        }
+        steps.push_back(std::move(step));
+    }
+    steps.push_back(std::move(merge));
+    return steps;
+}
+
+std::vector<Step> OccupancyMap::exactSteps(const World& world) const {
+    Step small{.name = "triangles",
+               .shaders = {"occupancy/exact.comp"},
+               .defines = definesFor(world, resolution),
+               .uses = {{.port = "grid", .access = Access::Uniform},
+                        {.port = "occupancy", .access = Access::Storage, .write = true},
+                        {.port = "large", .access = Access::Storage, .write = true}},
+               .modules = {},
+               .group = "generation"};
+    Step large = small;
+    large.name = "large_triangles";
+    large.defines["LARGE"] = "1";
+    large.uses.back().write = false;
+    large.uses.push_back({.port = "large", .access = Access::Indirect});
+    return {small, large};
+}
+
+void OccupancyMap::execute(const Step& step, Commands& commands) {
+    const auto n = static_cast<std::uint32_t>(resolution);
+    if (step.name == "grid") return uploadGrid(commands);
+    if (step.name == "merge") return commands.dispatchOver(n, n, n / 32);
+    if (step.name == "large_triangles") return commands.dispatchIndirect("large");
+    if (step.name == "triangles") return markTriangles(commands);
+    DrawState state = DrawState::overwrite();
+    state.viewport = glm::uvec2(n);
+    state.logicOr = method == OccupancyMethod::LogicOp;
+    if (method == OccupancyMethod::DominantAxis) return commands.drawScene(state, allClasses);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (makesColumns(method) && step.name.back() != "xyz"[axis]) continue;
+        commands.set("axis", axis);
+        commands.drawScene(state, allClasses);
+    }
+}
+
+void OccupancyMap::uploadGrid(Commands& commands) const {
+    glm::vec3 shift(0);
+    if (jitter) {
+        const FrameInfo& frame = commands.frame();
+        const std::uint32_t seed = shared::pixelSeed({0, 0}, shared::randomGridJitter, frame.seed);
+        const glm::vec2 plane = shared::scrambledSobol(frame.index, seed);
+        const glm::vec2 height = shared::scrambledSobol(frame.index, shared::hashCombine(seed, 1));
+        shift = glm::vec3(plane, height.x) - 0.5f;
+    }
+    commands.uploadValue("grid", occupancyGrid(commands.facts().sphere, resolution, shift));
+}
+
+void OccupancyMap::markTriangles(Commands& commands) {
+    const std::uint32_t triangles = commands.geometry().triangleCount();
+    constexpr std::uint32_t group = 64,
+                            row = 32768; // invocations a group; groups along x, below every device's limit
+    const std::uint32_t groups = std::max(1u, (triangles + group - 1) / group);
+    commands.set("triangleCount", static_cast<int>(triangles));
+    commands.dispatch(std::min(groups, row), (groups + row - 1) / row);
+}
+
+} // namespace kestrel

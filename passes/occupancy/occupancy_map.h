@@ -1,0 +1,41 @@
+// The occupancy map: one bit a cell of a cube around the scene, set where there is a surface.
+#pragma once
+#include "graph/pass.h"
+#include "graph/registry.h"
+#include <vector>
+
+namespace kestrel {
+
+// How the map is made. The first four rasterize along x, y and z and take the union (ROMA, section 6; Forest
+// et al. 2009) and give the same bits: they differ in how fragments of one column come together. Rasterizing
+// tests cells' centre lines and so misses cells that a surface only grazes; `Exact` misses none.
+enum class OccupancyMethod : std::uint8_t {
+    ThreeAxis,        // atomics on the map
+    LogicOp,          // integer attachments with the logic operation OR
+    Interlock,        // images in a critical section (rasterizer-ordered views)
+    FramebufferFetch, // attachments read back in order (rasterizer-ordered views)
+    DominantAxis,     // one pass: each triangle along the axis where it covers most
+    Exact             // triangles against cells in compute
+};
+
+class OccupancyMap final : public Pass {
+public:
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+    void execute(const Step& step, Commands& commands) override;
+
+    int resolution = 128;
+    OccupancyMethod method = OccupancyMethod::ThreeAxis;
+    bool jitter = false;
+
+private:
+    [[nodiscard]] std::vector<Step> rasterSteps(const World& world) const;
+    [[nodiscard]] std::vector<Step> columnSteps(const World& world) const;
+    [[nodiscard]] std::vector<Step> exactSteps(const World& world) const;
+    void declareInternals(const Step& step, const World& world, Declaration& declaration) const;
+    void uploadGrid(Commands& commands) const;
+    static void markTriangles(Commands& commands);
+};
+
+} // namespace kestrel

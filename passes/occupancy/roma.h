@@ -1,0 +1,34 @@
+// Ray-aligned occupancy map array: Zeng et al., "Ray-aligned Occupancy Map Array for Fast Approximate Ray
+// Tracing".
+#pragma once
+#include "graph/pass.h"
+#include "graph/registry.h"
+#include "shared/roma.h"
+#include <vector>
+
+namespace kestrel {
+
+// Rotates an occupancy map towards angular^2 candidate directions (section 4.1) and traces through them
+// (4.2).
+class Roma final : public Pass {
+public:
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+    void execute(const Step& step, Commands& commands) override;
+
+    int angular = 4;
+    int iterations = 8;
+    float offset = 1.5f;
+    bool resample = true;
+    bool countExhausted = false;
+
+private:
+    void upload(const Step& step, Commands& commands);
+    static void reportExhausted(Commands& commands);
+
+    std::vector<shared::RomaDirection> strata_; // of strataAngular_^2
+    int strataAngular_ = 0;
+};
+
+} // namespace kestrel

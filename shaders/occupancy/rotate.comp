@@ -1,0 +1,62 @@
+// Rotates the base map towards every candidate direction (ROMA, section 4.1, algorithm 1): each cell of a rotated map
+// takes the bit of the base cell that its centre lies in. One invocation writes one column of one map, WORDS words.
+//
+// The position is stepped in fixed-point integers. Against floats this measures 1.5 times faster on a CPU driver (no
+// rounding, no conversion; one mask tells whether all three coordinates lie inside), and the bits are the same everywhere.
+#include "shared/occupancy.h"
+#include "shared/roma.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#ifdef BASE_STORAGE
+layout(std430) readonly buffer Occupancy { uint occupancy[]; };
+#define BASE_WORD(index) occupancy[index]
+#else
+layout(r32ui) readonly uniform uimageBuffer occupancy;
+#define BASE_WORD(index) imageLoad(occupancy, index).x
+#endif
+
+#if WORDS == 1
+layout(std430) writeonly buffer Maps { uint maps[]; };
+#elif WORDS == 2
+layout(std430) writeonly buffer Maps { uvec2 maps[]; };
+#else
+layout(std430) writeonly buffer Maps { uvec4 maps[]; };
+#endif
+
+layout(std140) uniform Rotations { RomaRotation rotations[DIRECTIONS]; };
+
+const int whole = romaFractionBits;
+
+void main() {
+    ivec3 id = ivec3(gl_GlobalInvocationID);
+    RomaRotation axes = rotations[id.z];
+    ivec3 position = ivec3((RESOLUTION / 2) << whole) + (2 * id.x + 1 - RESOLUTION) * axes.halfX.xyz +
+                     (2 * id.y + 1 - RESOLUTION) * axes.halfY.xyz + (1 - RESOLUTION) * axes.halfZ.xyz;
+    ivec3 step_ = 2 * axes.halfZ.xyz;
+    uint column[WORDS];
+    for (int w = 0; w < WORDS; ++w) {
+        uint bits = 0u;
+        // A constant number of trips measures faster than leaving early.
+        for (int i = 0; i < 32; ++i) {
+            if (((position.x | position.y | position.z) & ~((RESOLUTION << whole) - 1)) == 0) {
+                ivec3 cell = position >> whole;
+                uint word = BASE_WORD(occupancyWord(cell.x, cell.y, cell.z, RESOLUTION));
+                bits |= ((word >> uint(cell.z & 31)) & 1u) << i;
+            }
+            position += step_;
+        }
+        column[w] = bits;
+    }
+    int at = (id.z * RESOLUTION + id.y) * RESOLUTION + id.x;
+#if WORDS == 1
+    maps[at] = column[0];
+#elif WORDS == 2
+    maps[at] = uvec2(column[0], column[1]);
+#elif WORDS == 4
+    maps[at] = uvec4(column[0], column[1], column[2], column[3]);
+#else
+    maps[2 * at] = uvec4(column[0], column[1], column[2], column[3]);
+    maps[2 * at + 1] = uvec4(column[4], column[5], column[6], column[7]);
+#endif
+}
