@@ -19,5 +19,7 @@ function(kestrel_plugin name)
     endif()
     set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${folder}
                           CXX_EXTENSIONS OFF INSTALL_RPATH "$ORIGIN/..")
-    install(TARGETS ${target} LIBRARY DESTINATION lib/kestrel)
+    if(NOT KESTREL_PLUGIN_IS_A_TEST)
+        install(TARGETS ${target} LIBRARY DESTINATION lib/kestrel)
+    endif()
 endfunction()

@@ -1,0 +1,107 @@
+#include "core/error.h"
+#include "core/files.h"
+#include "graph/guard.h"
+#include "plugin/loader.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdexcept>
+
+namespace kestrel {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+fs::path plugin(const std::string& name) {
+    return fs::path(KESTREL_BINARY_DIR) / "test_plugins" / name / (name + ".so");
+}
+
+TEST(PluginLoader, AGoodPluginBringsItsTypesWithItsName) {
+    Registry registry;
+    const PluginResult result = loadPlugin(plugin("good"), registry);
+    EXPECT_EQ(result.failure, PluginFailure::None) << result.message;
+    EXPECT_THAT(result.types, ElementsAre("Good"));
+    const PassType* type = registry.find("Good");
+    ASSERT_NE(type, nullptr);
+    EXPECT_EQ(type->plugin, "good.so");
+    EXPECT_EQ(std::get<std::int64_t>(type->property("amount")->standard), 3);
+    EXPECT_NE(type->make(), nullptr);
+}
+
+TEST(PluginLoader, SaysInWhichWayAPluginIsBadAndLeavesTheRegistryAlone) {
+    Registry registry;
+    const auto fails = [&](const fs::path& library, PluginFailure failure) {
+        const PluginResult result = loadPlugin(library, registry);
+        EXPECT_EQ(result.failure, failure) << result.message;
+        EXPECT_TRUE(registry.types().empty());
+        EXPECT_TRUE(registry.shaderFolders.empty());
+        EXPECT_EQ(result.message.find('\n'), std::string::npos);
+        const std::string begin = "plugin " + library.string() + " is skipped: ";
+        EXPECT_THAT(result.message, StartsWith(begin));
+        return result.message.substr(std::min(begin.size(), result.message.size()));
+    };
+    EXPECT_EQ(fails("/nowhere/at_all.so", PluginFailure::NoFile), "no such file");
+    const fs::path text = fs::path(testing::TempDir()) / "kestrel_text.so";
+    writeFile(text, "not a library");
+    EXPECT_THAT(fails(text, PluginFailure::NotLoadable), StartsWith("it does not load: "));
+    fs::remove(text);
+    EXPECT_THAT(fails(plugin("lacks_symbol"), PluginFailure::NotLoadable),
+                HasSubstr("kestrelTestSymbolThatNobodyHas"));
+    EXPECT_EQ(fails(plugin("no_plugin"), PluginFailure::NotAPlugin),
+              "it is not a Kestrel plugin (it has no KESTREL_PLUGIN block)");
+    EXPECT_EQ(fails(plugin("other_stamp"), PluginFailure::OtherStamp),
+              "it was built for another Kestrel: its stamp is [kestrel 0.0.1, headers 0], this one's is [" +
+                  abiStamp() + "]; build it again");
+    EXPECT_EQ(fails(plugin("throws"), PluginFailure::Threw), "its registration failed: no luck today");
+    EXPECT_THAT(fails(plugin("misnamed"), PluginFailure::Threw), HasSubstr("the port name 'Result' is not"));
+}
+
+TEST(PluginLoader, ANameCanBeTakenOnce) {
+    Registry registry;
+    ASSERT_EQ(loadPlugin(plugin("good"), registry).failure, PluginFailure::None);
+    const PluginResult result = loadPlugin(plugin("taken"), registry);
+    EXPECT_EQ(result.failure, PluginFailure::NameTaken);
+    EXPECT_THAT(result.message, HasSubstr("the name of its pass type 'Good' is taken by good.so"));
+    EXPECT_EQ(registry.types().size(), 1u);
+}
+
+TEST(PluginLoader, LoadsFoldersInOrderAndSkipsWhatIsBad) {
+    const fs::path folder = fs::path(testing::TempDir()) / "kestrel_plugins";
+    fs::remove_all(folder);
+    fs::create_directories(folder / "shaders");
+    for (const char* name : {"throws", "good"})
+        fs::copy_file(plugin(name), folder / (std::string(name) + ".so"));
+    Registry registry;
+    const auto failures = loadPlugins(registry, {folder, "/nowhere"});
+    ASSERT_EQ(failures.size(), 2u);
+    EXPECT_EQ(failures[0].failure, PluginFailure::Threw);
+    EXPECT_EQ(failures[1].failure, PluginFailure::NoFile);
+    EXPECT_THAT(registry.names(), ElementsAre("Good"));
+    EXPECT_THAT(registry.shaderFolders, ElementsAre(folder / "shaders"));
+    fs::remove_all(folder);
+}
+
+TEST(PluginLoader, TheStampNamesVersionHeadersAndCompiler) {
+    EXPECT_THAT(abiStamp(), testing::MatchesRegex("kestrel [0-9.]+, headers [0-9a-f]+, compiler .*, C\\+\\+ "
+                                                  "[0-9]+L?, [a-z-]+, sizes [0-9]+"));
+}
+
+TEST(Guard, ForeignExceptionsNameThePassAndTheCall) {
+    const auto message = [](auto call) {
+        try {
+            guarded("ao", "execute", call);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(message([] { throw std::out_of_range("index 7"); }), "pass 'ao' failed in execute: index 7");
+    EXPECT_EQ(message([] { throw 42; }), "pass 'ao' failed in execute: an exception of unknown kind");
+    EXPECT_EQ(message([] { throw MachineError("no GL"); }), "no GL");
+    EXPECT_EQ(guarded("ao", "declare", [] { return 5; }), 5);
+}
+
+} // namespace
+} // namespace kestrel

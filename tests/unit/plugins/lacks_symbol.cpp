@@ -1,0 +1,3 @@
+// A library that does not load: nobody has this function.
+extern "C" int kestrelTestSymbolThatNobodyHas();
+extern "C" int answer() { return kestrelTestSymbolThatNobodyHas(); }
