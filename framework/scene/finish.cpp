@@ -6,42 +6,66 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <numeric>
 
 namespace kestrel {
 namespace {
 
 template<class T>
-void unweld(std::vector<T>& attribute, const std::vector<std::uint32_t>& indices) {
+void gather(std::vector<T>& attribute, const std::vector<std::uint32_t>& vertices) {
     if (attribute.empty()) return;
-    std::vector<T> corners;
-    corners.reserve(indices.size());
-    for (const std::uint32_t index : indices) corners.push_back(attribute[index]);
-    attribute = std::move(corners);
+    std::vector<T> gathered;
+    gathered.reserve(vertices.size());
+    for (const std::uint32_t vertex : vertices) gathered.push_back(attribute[vertex]);
+    attribute = std::move(gathered);
 }
 
-// Gives each triangle three vertices of its own.
-void unweldPrimitive(Primitive& primitive) {
-    const std::vector<std::uint32_t> indices = std::move(primitive.indices);
-    unweld(primitive.positions, indices);
-    unweld(primitive.texCoords, indices);
-    unweld(primitive.texCoords1, indices);
-    unweld(primitive.colours, indices);
-    unweld(primitive.joints, indices);
-    unweld(primitive.weights, indices);
+// Makes `vertices` (of the present ones, each as often as wanted) the vertices of the primitive; the indices
+// are the caller's.
+void gatherVertices(Primitive& primitive, const std::vector<std::uint32_t>& vertices) {
+    gather(primitive.positions, vertices);
+    gather(primitive.normals, vertices);
+    gather(primitive.tangents, vertices);
+    gather(primitive.texCoords, vertices);
+    gather(primitive.texCoords1, vertices);
+    gather(primitive.colours, vertices);
+    gather(primitive.joints, vertices);
+    gather(primitive.weights, vertices);
     for (Primitive::MorphTarget& target : primitive.targets) {
-        unweld(target.positions, indices);
-        // Displacements of normals that the file does not have displace nothing.
+        gather(target.positions, vertices);
+        gather(target.normals, vertices);
+        gather(target.tangents, vertices);
+    }
+}
+
+// Vertices without a triangle would widen the bounds and cost time each frame.
+void dropUnusedVertices(Primitive& primitive) {
+    constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> newIndex(primitive.positions.size(), unused), kept;
+    for (const std::uint32_t index : primitive.indices) newIndex[index] = 0;
+    for (std::uint32_t i = 0; i < newIndex.size(); ++i) {
+        if (newIndex[i] == unused) continue;
+        newIndex[i] = static_cast<std::uint32_t>(kept.size());
+        kept.push_back(i);
+    }
+    if (kept.size() == primitive.positions.size()) return;
+    gatherVertices(primitive, kept);
+    for (std::uint32_t& index : primitive.indices) index = newIndex[index];
+}
+
+// Gives each triangle three vertices of its own, with its normal.
+void makeFlatNormals(Primitive& primitive) {
+    const std::vector<std::uint32_t> corners = primitive.indices;
+    gatherVertices(primitive, corners);
+    std::iota(primitive.indices.begin(), primitive.indices.end(), 0u);
+    primitive.flatNormals = true;
+    primitive.tangents.clear();
+    // Displacements of normals that the mesh does not have displace nothing.
+    for (Primitive::MorphTarget& target : primitive.targets) {
         target.normals.clear();
         target.tangents.clear();
     }
-    primitive.indices.resize(indices.size());
-    for (size_t i = 0; i < indices.size(); ++i) primitive.indices[i] = static_cast<std::uint32_t>(i);
-}
-
-void makeFlatNormals(Primitive& primitive) {
-    unweldPrimitive(primitive);
-    primitive.flatNormals = true;
-    primitive.tangents.clear();
     primitive.normals.assign(primitive.positions.size(), glm::vec3(0, 0, 1));
     for (size_t i = 0; i + 2 < primitive.positions.size(); i += 3) {
         const glm::dvec3 a(primitive.positions[i]);
@@ -100,6 +124,7 @@ void makeTangents(Primitive& primitive, int texCoordSet) {
 void completePrimitives(Scene& scene) {
     for (Mesh& mesh : scene.meshes)
         for (Primitive& primitive : mesh.primitives) {
+            dropUnusedVertices(primitive);
             if (primitive.normals.empty() && !primitive.positions.empty()) makeFlatNormals(primitive);
             if (needsTangents(scene, primitive))
                 makeTangents(primitive,

@@ -138,6 +138,7 @@ Light readLight(const tinygltf::Light& source) {
     light.colour = glm::vec3(vec3Of(source.color, glm::dvec3(1)));
     light.intensity = static_cast<float>(source.intensity);
     light.range = static_cast<float>(source.range);
+    if (light.kind != LightKind::Spot) return light;
     light.innerCone = static_cast<float>(source.spot.innerConeAngle);
     light.outerCone = static_cast<float>(source.spot.outerConeAngle);
     return light;

@@ -140,8 +140,9 @@ struct Scene {
     [[nodiscard]] double duration() const;
 };
 
-// Completes a scene after loading or building: flat normals where a primitive has none, tangents where a
-// normal map needs them, `origin` from the bounds over the timeline, and a camera that frames the scene
+// Completes a scene after loading or building: drops vertices that no triangle uses, makes flat normals where
+// a primitive has none and tangents where a normal map needs them, `origin` from the bounds over the
+// timeline, and a camera that frames the scene
 // ("default") where there is none. Idempotent; call it again after a change of rootTransform. Throws
 // InputError where the transforms take a vertex out of the range of float.
 void finishScene(Scene& scene);
