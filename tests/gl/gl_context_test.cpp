@@ -105,16 +105,26 @@ TEST(Context, OsMesaStandsBesideEgl) {
         GTEST_SKIP() << error.what();
     }
     EXPECT_THAT(osmesa->capabilities().version, HasSubstr("4.6"));
-    // The functions must be those of the current context: a buffer of one is none of the other.
+    // Both give out the same first names; what stands behind them is each context's own.
+    const auto bufferOf = [](gl::Context& context, std::uint32_t word) {
+        context.makeCurrent();
+        gl::Buffer buffer(16, "own");
+        buffer.clear(word);
+        return buffer;
+    };
+    const auto wordOf = [](gl::Context& context, const gl::Buffer& buffer) {
+        context.makeCurrent();
+        return test::as<std::uint32_t>(buffer.download())[3];
+    };
+    gl::Buffer inEgl = bufferOf(egl, 7);
+    gl::Buffer inOsMesa = bufferOf(*osmesa, 8);
     for (int turn = 0; turn < 2; ++turn) {
-        for (gl::Context* context : {&egl, osmesa.get()}) {
-            context->makeCurrent();
-            gl::Buffer buffer(16, "turn");
-            buffer.clear(static_cast<std::uint32_t>(turn + 7));
-            EXPECT_EQ(test::as<std::uint32_t>(buffer.download())[3], static_cast<std::uint32_t>(turn + 7));
-        }
+        EXPECT_EQ(wordOf(egl, inEgl), 7U);
+        EXPECT_EQ(wordOf(*osmesa, inOsMesa), 8U);
     }
-    egl.makeCurrent();
+    inOsMesa = gl::Buffer();
+    osmesa.reset();
+    EXPECT_EQ(wordOf(egl, inEgl), 7U); // still there, and current again
 }
 
 TEST(Context, CountsSevereErrors) {

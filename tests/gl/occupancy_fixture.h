@@ -1,0 +1,165 @@
+// What the tests of passes/occupancy share: scenes of a few triangles, a graph of the two passes, and rays
+// through them.
+#pragma once
+#include "execute/commands.h"
+#include "execute/renderer.h"
+#include "gl/gl_fixture.h"
+#include "passes/occupancy/grid.h"
+#include "passes/occupancy/occupancy_map.h"
+#include "passes/occupancy/roma.h"
+#include "passes/ray_effects/ray_query.h"
+#include "shared/ray.h"
+#include <bit>
+#include <limits>
+#include <random>
+
+namespace kestrel::test {
+
+// Triangles, three corners each, as a scene with the default material.
+inline Scene sceneOf(std::vector<glm::vec3> corners) {
+    Scene scene;
+    scene.name = "triangles";
+    Primitive primitive;
+    for (std::uint32_t i = 0; i < corners.size(); ++i) primitive.indices.push_back(i);
+    primitive.positions = std::move(corners);
+    scene.meshes.push_back({"mesh", {primitive}, {}});
+    Node node;
+    node.mesh = 0;
+    scene.nodes.push_back(node);
+    scene.roots = {0};
+    finishScene(scene);
+    return scene;
+}
+
+inline Scene emptyScene() {
+    Scene scene;
+    finishScene(scene);
+    return scene;
+}
+
+// Triangles of all sizes and directions within the unit ball.
+inline std::vector<glm::vec3> randomTriangles(int count, std::uint32_t seed, float scale = 1) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const auto inBall = [&] {
+        for (;;) {
+            const glm::vec3 p(unit(random), unit(random), unit(random));
+            if (glm::dot(p, p) < 1) return p;
+        }
+    };
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < count; ++i) {
+        const glm::vec3 centre = inBall();
+        const float size = std::pow(10.0f, -3 * std::abs(unit(random)));
+        for (int k = 0; k < 3; ++k) {
+            glm::vec3 p = centre + size * inBall();
+            if (glm::length(p) > 1) p = glm::normalize(p);
+            corners.push_back(p * scale);
+        }
+    }
+    return corners;
+}
+
+// Hands a list of rays to whoever asks.
+class RaySource final : public Pass {
+public:
+    static PassType type() {
+        return Describe<RaySource>("RaySource", "Rays of a test")
+            .output("rays", PortKind::Buffer, "Ray records");
+    }
+    static inline std::vector<shared::RayRecord> rays;
+    [[nodiscard]] Declaration declare(const World&, const Inputs&, const Demand&) const override {
+        Declaration declaration;
+        declaration.outputs = {
+            {.port = "rays", .desc = Desc::buffer(rays.size() * sizeof(shared::RayRecord))}};
+        declaration.steps = {{.name = "upload",
+                              .shaders = {},
+                              .defines = {},
+                              .uses = {{.port = "rays", .access = Access::Copy, .write = true}},
+                              .modules = {}}};
+        declaration.depends = Causes::Frame;
+        return declaration;
+    }
+    void execute(const Step&, Commands& commands) override { commands.upload("rays", rays); }
+};
+
+inline const Registry& registry() {
+    static const Registry instance = [] {
+        Registry made;
+        made.add(OccupancyMap::type());
+        made.add(Roma::type());
+        made.add(RayQuery::type());
+        made.add(RaySource::type());
+        made.shaderFolders = {std::string(KESTREL_SOURCE_DIR) + "/shaders"};
+        return made;
+    }();
+    return instance;
+}
+
+inline std::vector<std::uint32_t> wordsOf(Renderer& renderer, const PortRef& port) {
+    return as<std::uint32_t>(renderer.readBytes(port));
+}
+
+inline shared::OccupancyGrid gridOf(Renderer& renderer) {
+    return as<shared::OccupancyGrid>(renderer.readBytes({"map", "grid"})).at(0);
+}
+
+inline bool isSet(const std::vector<std::uint32_t>& map, int n, const glm::ivec3& cell) {
+    const int word = shared::occupancyWord(cell.x, cell.y, cell.z, n);
+    return (map.at(static_cast<size_t>(word)) >> (cell.z & 31) & 1u) != 0;
+}
+
+inline size_t setBits(const std::vector<std::uint32_t>& map) {
+    size_t count = 0;
+    for (const std::uint32_t word : map) count += static_cast<size_t>(std::popcount(word));
+    return count;
+}
+
+inline RenderOptions smallFrame(RenderOptions options = {}) {
+    options.size = {16, 16, 1};
+    return options;
+}
+
+// An OccupancyMap "map" with these properties (JSON members), its outputs wanted.
+inline Renderer mapRenderer(Scene scene, const std::string& properties, RenderOptions options = {}) {
+    const Graph graph =
+        parseGraph(R"({"kestrel": 1, "passes": {"map": {"type": "OccupancyMap", "properties": {)" +
+                       properties + R"(}}}, "outputs": ["map.occupancy", "map.grid"]})",
+                   "test.json");
+    return {graph, registry(), std::move(scene), context().capabilities(), smallFrame(std::move(options))};
+}
+
+// RaySource::rays through a Roma "roma" over a "map": hits at "query.hits". Properties as JSON members.
+inline Renderer romaRenderer(Scene scene, const std::string& map, const std::string& roma,
+                             const std::string& query, RenderOptions options = {}) {
+    const Graph graph = parseGraph(R"({"kestrel": 1, "passes": {
+            "map": {"type": "OccupancyMap", "properties": {)" +
+                                       map + R"(}},
+            "roma": {"type": "Roma", "properties": {)" +
+                                       roma + R"(}},
+            "rays": {"type": "RaySource"},
+            "query": {"type": "RayQuery", "properties": {)" +
+                                       query + R"(}}},
+        "edges": [["map.occupancy", "roma.occupancy"], ["map.grid", "roma.grid"],
+                  ["rays.rays", "query.rays"], ["roma.tracer", "query.tracer"]],
+        "outputs": ["query.hits"]})",
+                                   "test.json");
+    for (const char* port : {"maps", "rotations", "directions"}) options.previews.push_back({"roma", port});
+    for (const char* port : {"occupancy", "grid"}) options.previews.push_back({"map", port});
+    return {graph, registry(), std::move(scene), context().capabilities(), smallFrame(std::move(options))};
+}
+
+inline shared::RayRecord rayRecord(const glm::vec3& origin, const glm::vec3& direction, float tMin = 0,
+                                   float tMax = std::numeric_limits<float>::infinity(),
+                                   const glm::vec3& normal = glm::vec3(0)) {
+    shared::RayRecord record{};
+    record.origin = origin;
+    record.direction = glm::normalize(direction);
+    record.tMin = tMin;
+    record.tMax = tMax;
+    record.normal = normal;
+    record.flags = 1;
+    return record;
+}
+
+} // namespace kestrel::test
