@@ -17,11 +17,11 @@ struct CompareOptions {
     bool json = false;
 };
 
-// Measures `test` against `reference`, prints a table or one line of JSON (see toJson) on standard output,
-// and returns the exit status: 0, or 1 if a limit is missed, after one line on standard error that names
-// each. Two PNG files are compared as LDR, two HDR or EXR files as HDR. Throws InputError for a limit that is
-// not of that form, a file that can't be read or written, one LDR and one HDR file, or images that can't be
-// compared.
+// Measures `test` against `reference`, prints a table or one line of JSON (see toJson) on standard
+// output, and returns the exit status: 0, or 1 if a limit is missed, after one line on standard
+// error that names each. Two PNG files are compared as LDR, two HDR or EXR files as HDR. Throws
+// InputError for a limit that is not of that form, a file that can't be read or written, one LDR
+// and one HDR file, or images that can't be compared.
 int compareCommand(const CompareOptions& options);
 
 } // namespace kestrel

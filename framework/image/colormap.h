@@ -5,8 +5,8 @@
 
 namespace kestrel {
 
-// The perceptually uniform maps by Smith and van der Walt (2015): magma is the map of the published FLIP
-// images.
+// The perceptually uniform maps by Smith and van der Walt (2015): magma is the map of the
+// published FLIP images.
 enum class ColorMap { Magma, Viridis };
 
 // The colour of `value` in [0, 1] as sRGB code values in [0, 1], the nearest of 256; values outside count as

@@ -117,6 +117,14 @@ Image decodeExr(std::span<const std::byte> bytes, const std::string& name) {
         if (layout.channels[static_cast<std::size_t>(channel)].type == ExrPixelType::Uint)
             failImage(name, fmt::format("holds integers in the channel '{}'; half and float are read",
                                         layout.channels[static_cast<std::size_t>(channel)].name));
+    // The decoder of PIZ takes the length of its tables (at most 8192 bytes of bitmap) from the data without
+    // asking how much data there is: with zeros behind the file it reads those.
+    std::vector<std::byte> padded;
+    if (layout.piz) {
+        padded.assign(bytes.begin(), bytes.end());
+        padded.resize(padded.size() + 65536);
+        bytes = padded;
+    }
     Header header;
     Pixels pixels;
     try {

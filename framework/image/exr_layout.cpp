@@ -14,13 +14,12 @@ struct Compression {
     std::string_view name;
     int linesPerChunk; // 0: not read
 };
-// By the number that stands in the file. PIZ is left out because the decoder's Huffman stage follows damaged
-// tables outside its buffers.
+// By the number that stands in the file.
 constexpr std::array<Compression, 10> compressions{{{"none", 1},
                                                     {"RLE", 1},
                                                     {"ZIPS", 1},
                                                     {"ZIP", 16},
-                                                    {"PIZ", 0},
+                                                    {"PIZ", 32},
                                                     {"PXR24", 0},
                                                     {"B44", 0},
                                                     {"B44A", 0},
@@ -142,7 +141,7 @@ private:
         if (!window_) damaged("it has no data window");
         if (*compression_ >= compressions.size()) damaged(fmt::format("the compression {}", *compression_));
         if (compressions[*compression_].linesPerChunk == 0)
-            unread(fmt::format("the compression {} (ZIP, ZIPS, RLE and none are)",
+            unread(fmt::format("the compression {} (PIZ, ZIP, ZIPS, RLE and none are)",
                                compressions[*compression_].name));
         const auto width = std::int64_t{window_->maxX} - window_->minX + 1;
         const auto height = std::int64_t{window_->maxY} - window_->minY + 1;
@@ -153,6 +152,7 @@ private:
             damaged("its data window is far from the origin");
         layout_.width = static_cast<int>(width);
         layout_.height = static_cast<int>(height);
+        layout_.piz = compressions[*compression_].name == "PIZ";
     }
 
     void checkChunks() const {

@@ -19,11 +19,12 @@ struct ExrLayout {
     int width = 0;
     int height = 0;
     std::vector<ExrChannel> channels; // in the file's order
+    bool piz = false;                 // whether the pixels are compressed by PIZ
 };
 
 // Checks that `bytes` is a whole, single-part scan-line EXR whose chunks lie inside it and have possible
 // sizes. Throws InputError whose location is `name` and that says what is wrong, or which kind of EXR is not
-// read (tiles, several parts, deep data, subsampled channels, lossy compressions and PIZ).
+// read (tiles, several parts, deep data, subsampled channels, lossy compressions).
 ExrLayout scanExr(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace kestrel::detail

@@ -33,8 +33,8 @@ Image linearOfLdr(const Image& image) {
     return rgb;
 }
 
-// The fit of the ACES tone map by Narkowicz (2016), as a quotient of quadratics in x, its exposure of 0.6
-// undone.
+// The fit of the ACES tone map by Narkowicz (2016), as a quotient of quadratics in x, its
+// exposure of 0.6 undone.
 struct Quadratic {
     double square, linear, constant;
     [[nodiscard]] double at(double x) const { return (square * x + linear) * x + constant; }

@@ -1,9 +1,8 @@
 // FLIP, the difference that a viewer sees when two images alternate.
-//   LDR: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference Evaluator for
-//        Alternating Images" (HPG 2020).
-//   HDR: Andersson, Nilsson, Shirley, Akenine-Moller, "Visualizing Errors in Rendered High Dynamic Range
-//   Images"
-//        (Eurographics 2021, short papers).
+//   LDR: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference
+//        Evaluator for Alternating Images" (HPG 2020).
+//   HDR: Andersson, Nilsson, Shirley, Akenine-Moller, "Visualizing Errors in Rendered High Dynamic
+//        Range Images" (Eurographics 2021, short papers).
 #pragma once
 #include "image/image.h"
 
@@ -16,9 +15,9 @@ struct FlipOptions {
     bool hdr = false;
 };
 
-// What the error map is pooled to, over the pixels that count. The weighted percentiles weigh each pixel by
-// its own error: the p-th is the least error such that the errors up to it sum to more than p times all
-// errors.
+// What the error map is pooled to, over the pixels that count. The weighted percentiles weigh
+// each pixel by its own error: the p-th is the least error such that the errors up to it sum to
+// more than p times all errors.
 struct FlipFigures {
     double mean = 0;
     double weightedMedian = 0;
@@ -50,10 +49,10 @@ FlipResult flip(const Image& reference, const Image& test, const FlipOptions& op
 // The figures of an error map.
 FlipFigures poolFlip(const Image& map, const Image* mask = nullptr);
 
-// The exposures for a linear image: from where its greatest luminance to where its median luminance reaches
-// 0.85 after the ACES tone map, about one a stop and at least two. Where half the pixels are black, the
-// median of the others is taken; the published formula has no finite value there. A black image gets the
-// exposure 0.
+// The exposures for a linear image: from where its greatest luminance to where its median luminance
+// reaches 0.85 after the ACES tone map, about one a stop and at least two. Where half the pixels
+// are black, the median of the others is taken; the published formula has no finite value there. A
+// black image gets the exposure 0.
 FlipExposures flipExposures(const Image& reference);
 
 } // namespace kestrel

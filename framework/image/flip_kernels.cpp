@@ -8,8 +8,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double featureWidthDegrees = 0.082; // w of section 4.2
 
-// The contrast sensitivity functions as sums of Gaussians a sqrt(pi/b) exp(-pi^2 x^2 / b), x in degrees
-// (table 1).
+// The contrast sensitivity functions as sums of Gaussians a sqrt(pi/b) exp(-pi^2 x^2 / b),
+// x in degrees (table 1).
 struct Gaussian {
     double a, b;
 };

@@ -21,8 +21,8 @@ std::vector<std::byte> encodeExr(const Image& image);
 // Throws InputError if an image of this size may not be read.
 void requireImageSize(long long width, long long height, long long channels, const std::string& name);
 
-// Throws InputError at `name`. Texts from the file may stand in the message: what is not printable becomes
-// '?'.
+// Throws InputError at `name`. Texts from the file may stand in the message: what is not
+// printable becomes '?'.
 [[noreturn]] void failImage(const std::string& name, const std::string& message);
 std::string printable(std::string text);
 

@@ -57,8 +57,8 @@ Image convertChannels(const Image& image, int channels);
 // Luma or luminance with the weights of Rec. 709.
 constexpr float luminance(float r, float g, float b) { return 0.2126F * r + 0.7152F * g + 0.0722F * b; }
 
-// The transfer function of sRGB (IEC 61966-2-1) and its inverse, on [0, 1]; values outside follow the curve's
-// outer pieces.
+// The transfer function of sRGB (IEC 61966-2-1) and its inverse, on [0, 1]; values outside
+// follow the curve's outer pieces.
 float linearToSrgb(float value);
 float srgbToLinear(float value);
 // As above for a whole image; alpha (the fourth channel) stays.

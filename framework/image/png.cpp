@@ -54,7 +54,7 @@ void readHeaderChunk(std::span<const unsigned char> data, PngLayout& layout, con
     const std::uint32_t channels = colorType == 2 ? 3 : colorType == 4 ? 2 : colorType == 6 ? 4 : 1;
     if (bits > 16) failImage(name, fmt::format("is a damaged PNG: {} bits a channel", bits));
     layout.bitsPerPixel = bits * channels;
-    requireImageSize(layout.width, layout.height, 4, name);
+    requireImageSize(layout.width, layout.height, colorType == 0 ? 1 : colorType == 2 ? 3 : 4, name);
 }
 
 // Walks the chunks: stb checks neither checksums nor the file's end.
@@ -75,6 +75,7 @@ PngLayout scanChunks(std::span<const unsigned char> bytes, const std::string& na
         if (first != (type == "IHDR")) failImage(name, "is a damaged PNG: its header is not its first chunk");
         if (first) readHeaderChunk(data, layout, name);
         if (type == "IDAT") layout.compressed.insert(layout.compressed.end(), data.begin(), data.end());
+        if (type == "tRNS") requireImageSize(layout.width, layout.height, 4, name); // becomes RGBA
         if (type == "IEND") return layout;
         at += 12 + length;
     }
