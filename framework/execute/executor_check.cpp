@@ -1,0 +1,77 @@
+// What is looked at after passes and frames: loop nests that gave up, and values that no output should hold.
+#include "execute/executor.h"
+#include "execute/finite.h"
+#include "gl/loader.h"
+#include "shader/trips.h"
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fmt/format.h>
+
+namespace kestrel {
+
+namespace {
+
+bool holdsFloats(const Desc& desc) { return desc.format != Format::None && !formatInfo(desc.format).integer; }
+
+// A buffer's texels, as one row of pixels.
+std::optional<BadValue> firstBadOfBuffer(const gl::Buffer& buffer, const Desc& desc, double minimum,
+                                         double maximum) {
+    const FormatInfo& format = formatInfo(desc.format);
+    if (format.bytes != 4 * format.channels) return std::nullopt;
+    const std::vector<std::byte> bytes = buffer.download();
+    const auto elements = static_cast<int>(std::min<std::uint64_t>(bytes.size() / 4, maxImageValues));
+    Image image(elements / format.channels, 1, format.channels);
+    std::memcpy(image.values.data(), bytes.data(), image.values.size() * sizeof(float));
+    return firstBadValue(image, minimum, maximum);
+}
+
+} // namespace
+
+void Executor::checkTrips() {
+    if (trips_.bytes() == 0) return;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    const std::vector<std::byte> bytes = trips_.download();
+    std::vector<Problem> problems;
+    for (size_t i = 0; i < plan().steps.size(); ++i) {
+        TripsBlock block;
+        std::memcpy(&block, bytes.data() + i * static_cast<size_t>(tripsStride), sizeof(block));
+        if (block.exhausted == 0) continue;
+        problems.push_back({{},
+                            fmt::format("{}: {} loop nests made more than {} trips (the most: {})",
+                                        labels_[i], block.exhausted, maxTrips, block.maximum)});
+    }
+    if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+void Executor::checkOutputs(const PlanPass& pass) {
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    const PassType* type = registry != nullptr ? registry->find(pass.type) : nullptr;
+    for (const auto& [port, resource] : pass.ports) {
+        const PortInfo* info = type != nullptr ? type->port(port) : nullptr;
+        if (resource < 0 || (info != nullptr && info->direction == PortDirection::Input)) continue;
+        const Desc& desc = resources_.info(resource).desc;
+        if (!holdsFloats(desc)) continue;
+        const double minimum = info != nullptr ? info->minimum : -HUGE_VAL;
+        const double maximum = info != nullptr ? info->maximum : HUGE_VAL;
+        const auto refuse = [&](const BadValue& bad, const std::string& place) {
+            throw Error(ExitStatus::MeasureFailed,
+                        {{{},
+                          fmt::format("pass '{}', port '{}', {}, channel {}: {} is {}", pass.name, port,
+                                      place, bad.channel, bad.value, bad.what)}});
+        };
+        if (resources_.isBuffer(resource)) {
+            if (const auto bad = firstBadOfBuffer(resources_.buffer(resource), desc, minimum, maximum))
+                refuse(*bad, fmt::format("element {}", bad->x));
+            continue;
+        }
+        const int layers = desc.kind == ResourceKind::TextureCube ? 6 : static_cast<int>(desc.extent.depth);
+        for (int layer = 0; layer < layers; ++layer)
+            if (const auto bad =
+                    firstBadValue(resources_.texture(resource).downloadImage(layer), minimum, maximum))
+                refuse(*bad, fmt::format("pixel ({}, {}){}", bad->x, bad->y,
+                                         layers > 1 ? fmt::format(" of layer {}", layer) : ""));
+    }
+}
+
+} // namespace kestrel

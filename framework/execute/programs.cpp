@@ -1,0 +1,79 @@
+#include "execute/programs.h"
+#include "shader/trips.h"
+#include <optional>
+
+namespace kestrel {
+
+namespace {
+
+bool mentionsBeyond(const std::string& text, std::string_view name, int declared) {
+    int found = 0;
+    for (size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + name.size()))
+        ++found;
+    return found > declared;
+}
+
+// shared/view.h declares the matrix once; a vertex input is declared once where there is one.
+bool readsLastMotion(const ComposedProgram& composed) {
+    for (const ComposedStage& stage : composed.stages)
+        if (mentionsBeyond(stage.text, "previousViewProjection", 1) ||
+            mentionsBeyond(stage.text, "previousPosition", 1))
+            return true;
+    return false;
+}
+
+} // namespace
+
+std::vector<std::string> colourAttachments(const PlanStep& step, const Plan& plan) {
+    std::vector<std::string> ports;
+    for (const PlanBinding& binding : step.bindings) {
+        if (binding.access != Access::Attachment) continue;
+        const Desc& desc = plan.resources.at(static_cast<size_t>(binding.resource)).desc;
+        if (!formatInfo(desc.format).depth) ports.push_back(binding.port);
+    }
+    return ports;
+}
+
+void Programs::adopt(const Plan& plan, ShaderLibrary& library, const Capabilities& capabilities) {
+    std::vector<Problem> problems;
+    const auto note = [&](const InputError& error) {
+        problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    };
+
+    std::vector<std::optional<ComposedProgram>> composed(plan.programs.size());
+    for (size_t i = 0; i < composed.size(); ++i) try {
+            ProgramRequest request = plan.programs[i];
+#ifdef KESTREL_DEBUG
+            request.defines[tripsDefine] = "1";
+#endif
+            composed[i] = compose(request, library);
+        } catch (const InputError& error) {
+            note(error);
+        }
+
+    std::vector<std::shared_ptr<Entry>> steps(plan.steps.size());
+    for (size_t i = 0; i < steps.size(); ++i) {
+        const int request = plan.steps[i].program;
+        if (request < 0 || !composed.at(static_cast<size_t>(request))) continue;
+        const ComposedProgram& text = *composed[static_cast<size_t>(request)];
+        const Key key{text.key, colourAttachments(plan.steps[i], plan)};
+        std::shared_ptr<Entry>& entry = cache_[key];
+        if (!entry) try {
+                auto made = std::make_shared<Entry>();
+                made->program = std::make_unique<gl::Program>(text, key.second, capabilities);
+                made->name = text.name;
+                made->key = text.key;
+                made->countsTrips = made->program->slot(tripsBlockName).has_value();
+                made->readsLastMotion = readsLastMotion(text);
+                entry = std::move(made);
+            } catch (const InputError& error) {
+                note(error);
+            }
+        steps[i] = entry;
+    }
+    std::erase_if(cache_, [](const auto& item) { return item.second == nullptr; });
+    if (!problems.empty()) throw InputError(std::move(problems));
+    steps_ = std::move(steps);
+}
+
+} // namespace kestrel

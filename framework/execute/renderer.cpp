@@ -1,0 +1,308 @@
+#include "execute/renderer.h"
+#include "core/check.h"
+#include "core/files.h"
+#include "draw/gpu_scene.h"
+#include "gl/context.h"
+#include "graph/value_text.h"
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace kestrel {
+
+namespace {
+
+constexpr double timeStep = 1.0 / 60;
+// A pass may find only after growing once that it needs more still; more often than that, it never ends.
+constexpr int maxRecompilations = 8;
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+std::vector<std::filesystem::path> shaderFolders(const Registry& registry) {
+    std::vector<std::filesystem::path> folders{shareFolder() / "shaders"};
+    folders.insert(folders.end(), registry.shaderFolders.begin(), registry.shaderFolders.end());
+    return folders;
+}
+
+void requireValid(const Graph& graph, const Registry& registry) {
+    std::vector<Problem> problems = validate(graph, registry);
+    if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+} // namespace
+
+PassSet reusePasses(const Graph& graph, const Registry& registry, const PassSet& before) {
+    PassSet passes = makePasses(graph, registry);
+    for (const GraphPass& pass : graph.passes) {
+        const auto old = before.find(pass.name);
+        const PassType* type = registry.find(pass.type);
+        if (old == before.end() || type == nullptr) continue;
+        const Pass& made = *passes.at(pass.name);
+        if (typeid(*old->second) != typeid(made)) continue;
+        setProperties(*old->second, *type, pass);
+        passes[pass.name] = old->second;
+    }
+    return passes;
+}
+
+Renderer::Renderer(Graph graph, const Registry& registry, Scene scene, const Capabilities& capabilities,
+                   RenderOptions options)
+    : graph_(std::move(graph))
+    , registry_(registry)
+    , scene_(std::move(scene))
+    , capabilities_(capabilities)
+    , options_(std::move(options)) {
+    requireValid(graph_, registry_);
+    camera_ = cameraIndex(scene_, options_.camera.empty() ? graph_.sceneCamera : options_.camera);
+    facts_ = gatherFacts(scene_);
+    executor_ = std::make_unique<Executor>(capabilities_, shaderFolders(registry_));
+    executor_->registry = &registry_;
+    executor_->options = {options_.timing, options_.checkFinite};
+    executor_->report().progress = options_.progress;
+    compileGraph(graph_);
+    gpu_ = std::make_unique<GpuScene>(scene_);
+}
+
+Renderer::~Renderer() = default;
+
+// ---- compiling
+
+void Renderer::compileGraph(const Graph& graph) {
+    World world{facts_, capabilities_, options_.size, grown_};
+    const auto start = Clock::now();
+    PassSet passes = reusePasses(graph, registry_, passes_);
+    auto plan = std::make_shared<const Plan>(compile(
+        graph, registry_, passes, world, {options_.keepAll, options_.shareMemory, options_.previews}));
+    compileMs_ = millisecondsSince(start);
+    executor_->adopt(std::move(plan), [&](const PlanPass& pass) {
+        std::string text;
+        for (const PropertyInfo& property : registry_.find(pass.type)->properties)
+            text += property.name + "=" + jsonText(property.get(*pass.instance)) + "\n";
+        return text;
+    });
+    passes_ = std::move(passes);
+}
+
+void Renderer::setGraph(Graph graph) {
+    requireValid(graph, registry_);
+    try {
+        compileGraph(graph);
+    } catch (...) {
+        // Pass objects are shared with the plan that stays: their properties go back.
+        reusePasses(graph_, registry_, passes_);
+        throw;
+    }
+    graph_ = std::move(graph);
+}
+
+void Renderer::set(const std::string& setting) {
+    Graph changed = graph_;
+    applySetting(changed, registry_, setting);
+    setGraph(std::move(changed));
+}
+
+void Renderer::setSize(Extent size) {
+    const Extent before = std::exchange(options_.size, size);
+    if (before == size) return;
+    try {
+        compileGraph(graph_);
+    } catch (...) {
+        options_.size = before;
+        throw;
+    }
+}
+
+void Renderer::setPreviews(std::vector<PortRef> previews) {
+    std::swap(options_.previews, previews);
+    if (options_.previews == previews) return;
+    try {
+        compileGraph(graph_);
+    } catch (...) {
+        options_.previews = std::move(previews);
+        throw;
+    }
+}
+
+void Renderer::setScene(Scene scene) {
+    const int camera = cameraIndex(scene, "");
+    const SceneFacts before = std::exchange(facts_, gatherFacts(scene));
+    try {
+        compileGraph(graph_);
+    } catch (...) {
+        facts_ = before;
+        throw;
+    }
+    scene_ = std::move(scene);
+    gpu_ = std::make_unique<GpuScene>(scene_);
+    camera_ = camera;
+    freeCamera_.reset();
+    geometryMade_ = false;
+    lastConditions_.reset();
+    time_ = 0;
+}
+
+bool Renderer::reloadIfChanged() {
+    if (!executor_->shaders().changed()) return false;
+    compileGraph(graph_);
+    return true;
+}
+
+// ---- time and camera
+
+void Renderer::setCamera(const std::string& name) {
+    camera_ = cameraIndex(scene_, name);
+    freeCamera_.reset();
+}
+
+void Renderer::setTiming(bool timing) {
+    options_.timing = timing;
+    executor_->options.timing = timing;
+}
+
+void Renderer::setTime(double seconds) { jump_ = seconds; }
+
+void Renderer::restart() {
+    index_ = 0;
+    time_ = 0;
+    lastConditions_.reset();
+    geometryMade_ = false;
+}
+
+std::string Renderer::cameraName() const {
+    return freeCamera_ ? "free" : scene_.cameras.at(static_cast<size_t>(camera_)).name;
+}
+
+bool Renderer::moves() const {
+    return facts_.duration > 0 && (facts_.geometryMoves || facts_.cameraMoves || facts_.lightsMove);
+}
+
+void Renderer::takeTime() {
+    const double before = time_;
+    jumped_ = false;
+    if (jump_) {
+        time_ = *jump_;
+        jumped_ = time_ != before;
+    } else if (moves() && !paused_ && lastConditions_) {
+        time_ += timeStep;
+        if (time_ > facts_.duration) {
+            time_ = std::fmod(time_, facts_.duration);
+            jumped_ = true;
+        }
+    }
+    jump_.reset();
+}
+
+// The scene at this frame's time. Once things stand still, the last positions are those of now.
+void Renderer::takeGeometry() {
+    const double previous = jumped_ || !lastConditions_ ? time_ : lastConditions_->time;
+    if (geometryMade_ &&
+        (!facts_.geometryMoves || (geometryTime_ == time_ && geometryPreviousTime_ == previous)))
+        return;
+    geometry_ = flatten(scene_, time_, previous);
+    gpu_->update(geometry_);
+    geometryTime_ = time_;
+    geometryPreviousTime_ = previous;
+    geometryMade_ = true;
+}
+
+FrameInfo Renderer::frameInfo() const {
+    FrameInfo info;
+    info.index = index_;
+    info.seed = options_.seed;
+    info.time = time_;
+    info.size = options_.size;
+    info.camera = freeCamera_ ? -1 : camera_;
+    info.cameraState = freeCamera_ ? *freeCamera_ : cameraAt(scene_, camera_, time_);
+    const bool cut = !lastConditions_ || jumped_ || lastConditions_->camera != info.camera;
+    info.previousCameraState = cut ? info.cameraState : lastConditions_->cameraState;
+    return info;
+}
+
+// ---- frames
+
+const FrameRecord& Renderer::frame() {
+    const auto start = Clock::now();
+    takeTime();
+    takeGeometry();
+    lights_ = lightsAt(scene_, time_);
+    gpu_->setLights(lights_);
+    const FrameScene frame{frameInfo(), &scene_, &facts_, &geometry_, &lights_, gpu_.get()};
+    const FrameConditions now{frame.info.camera, frame.info.cameraState, time_,
+                              jumped_,           options_.size,          lights_};
+    const Causes events = lastConditions_ ? eventsBetween(*lastConditions_, now, facts_) : Causes::All;
+
+    int recompiled = 0;
+    while (!executor_->run(frame, events)) {
+        const auto needed = executor_->report().overflows;
+        const auto& [port, elements] = *needed.begin();
+        if (++recompiled > maxRecompilations)
+            throw InputError(fmt::format("{} overflows after growing {} times; it now asks for {} elements",
+                                         port, maxRecompilations, elements));
+        for (const auto& [grownPort, count] : needed) grown_[grownPort] = std::max(grown_[grownPort], count);
+        compileGraph(graph_);
+    }
+    if (options_.timing) gl::finish();
+
+    record_ = {index_,    millisecondsSince(start), events, executor_->samples(), executor_->report().values,
+               recompiled};
+    lastConditions_ = now;
+    ++index_;
+    return record_;
+}
+
+// ---- reading
+
+Image Renderer::read(const PortRef& port, int layer, int mip) {
+    const int resource = heldResource(plan(), port);
+    if (executor_->resources().isBuffer(resource))
+        throw InputError(fmt::format("{} is a buffer, not an image", port.text()));
+    return executor_->resources().texture(resource).downloadImage(layer, mip);
+}
+
+std::vector<std::byte> Renderer::readBytes(const PortRef& port) {
+    const int resource = heldResource(plan(), port);
+    if (executor_->resources().isBuffer(resource)) return executor_->resources().buffer(resource).download();
+    return executor_->resources().texture(resource).download();
+}
+
+const Desc& Renderer::desc(const PortRef& port) const {
+    return plan().resources.at(static_cast<size_t>(heldResource(plan(), port))).desc;
+}
+
+namespace {
+
+// Why a plan does not hold a port that the graph has.
+std::string whyNotHeld(const Plan& plan, const PortRef& port) {
+    for (const LeftOut& item : plan.leftOut)
+        if (item.what == port.text() || item.what == port.pass)
+            return fmt::format("{} is left out, because {}", port.text(), item.why);
+    return {};
+}
+
+} // namespace
+
+int heldResource(const Plan& plan, const PortRef& port) {
+    for (const PlanOutput& output : plan.outputs)
+        if (output.port == port && output.resource >= 0) return output.resource;
+    std::vector<std::string> names;
+    for (const PlanPass& pass : plan.passes)
+        for (const auto& [name, desc] : pass.descs) {
+            const auto found = pass.ports.find(name);
+            const bool held = found != pass.ports.end() && found->second >= 0;
+            if (PortRef{pass.name, name} == port) {
+                if (held) return found->second;
+                throw InputError(fmt::format("{} is a shader module: it has no content", port.text()));
+            }
+            if (held) names.push_back(pass.name + "." + name);
+        }
+    const std::string why = whyNotHeld(plan, port);
+    throw InputError(why.empty()
+                         ? fmt::format("there is no port {}{}", port.text(), didYouMean(port.text(), names))
+                         : why);
+}
+
+} // namespace kestrel

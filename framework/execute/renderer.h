@@ -1,0 +1,127 @@
+// A graph on a scene, frame after frame: facts, compilation, execution and time in one place. Tests, the
+// command line, sweeps and the editor all render through it.
+#pragma once
+#include "execute/executor.h"
+#include "graph/plan.h"
+#include "image/image.h"
+#include "scene/facts.h"
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+class GpuScene;
+
+struct RenderOptions {
+    Extent size{640, 360, 1};
+    std::uint32_t seed = 0;
+    std::string camera; // empty: the graph's, else the scene's first
+    bool keepAll = false;
+    bool shareMemory = true;
+    bool timing = false;           // times every step; waits for the GPU around each where the clock needs it
+    bool checkFinite = false;      // an Error (MeasureFailed) names the first bad value of any output
+    std::vector<PortRef> previews; // ports to make and keep readable besides the graph's outputs
+    std::function<void(const std::string& what, double fraction)> progress; // of long work in one step
+};
+
+// What one frame did.
+struct FrameRecord {
+    std::uint32_t index = 0;
+    double ms = 0; // wall clock; with timing on, until the GPU was done
+    Causes events = Causes::None;
+    std::vector<StepSample> samples;                             // with timing on
+    std::map<std::string, std::map<std::string, double>> values; // what passes report: pass -> key -> value
+    int recompiled = 0;                                          // after overflows
+};
+
+class Renderer {
+public:
+    // On the current GL context, whose capabilities are given. Throws InputError with everything that is
+    // wrong with the graph, its shaders or the camera's name. The registry must outlive the renderer.
+    Renderer(Graph graph, const Registry& registry, Scene scene, const Capabilities& capabilities,
+             RenderOptions options = {});
+    ~Renderer();
+
+    // Renders the next frame. An animated scene goes on by 1/60 s a frame and starts again at its end.
+    // Throws InputError naming pass, need and limit if a pass overflows again and again.
+    const FrameRecord& frame();
+    [[nodiscard]] const FrameRecord& last() const { return record_; }
+
+    // The content of an output, a preview, or with keepAll of any port that the plan holds: a texture's layer
+    // and level as floats, row 0 at the top. Throws InputError with the near name if it is not held.
+    [[nodiscard]] Image read(const PortRef& port, int layer = 0, int mip = 0);
+    [[nodiscard]] std::vector<std::byte> readBytes(const PortRef& port);
+    // What it is. Throws InputError if it is not held.
+    [[nodiscard]] const Desc& desc(const PortRef& port) const;
+
+    // Changes. Each takes effect with the next frame; if it is refused (InputError), all stays as it was.
+    void set(const std::string& setting); // as --set: a property, or an edge
+    void setGraph(Graph graph);
+    void setScene(Scene scene);
+    void setSize(Extent size);
+    void setSeed(std::uint32_t seed) { options_.seed = seed; }
+    void setCamera(const std::string& name);
+    void setFreeCamera(const std::optional<CameraState>& camera) { freeCamera_ = camera; }
+    void setPreviews(std::vector<PortRef> previews);
+    void setTiming(bool timing);
+    void setTime(double seconds);                     // jumps there with the next frame
+    void setPaused(bool paused) { paused_ = paused; } // the time stands still
+    void restart();                                   // frame index 0, time 0, nothing kept
+    // Compiles anew if a shader file changed since it was read; true if so. With an error in the shader the
+    // plan before stays and the InputError is thrown.
+    bool reloadIfChanged();
+
+    [[nodiscard]] const Graph& graph() const { return graph_; }
+    [[nodiscard]] const Scene& scene() const { return scene_; }
+    [[nodiscard]] const SceneFacts& facts() const { return facts_; }
+    [[nodiscard]] const Plan& plan() const { return executor_->plan(); }
+    [[nodiscard]] const RenderOptions& options() const { return options_; }
+    [[nodiscard]] const Capabilities& capabilities() const { return capabilities_; }
+    [[nodiscard]] Executor& executor() { return *executor_; }
+    [[nodiscard]] std::string cameraName() const;
+    [[nodiscard]] std::uint32_t nextFrame() const { return index_; }
+    [[nodiscard]] double compileMs() const { return compileMs_; } // of the last compilation, without shaders
+
+private:
+    void compileGraph(const Graph& graph);
+    void takeTime();
+    void takeGeometry();
+    [[nodiscard]] FrameInfo frameInfo() const;
+    [[nodiscard]] bool moves() const;
+
+    Graph graph_;
+    const Registry& registry_;
+    Scene scene_;
+    Capabilities capabilities_;
+    RenderOptions options_;
+    SceneFacts facts_;
+    PassSet passes_;
+    std::map<std::string, std::uint64_t> grown_;
+    std::unique_ptr<GpuScene> gpu_;
+    std::unique_ptr<Executor> executor_;
+
+    Geometry geometry_;
+    std::vector<LightState> lights_;
+    int camera_ = 0;
+    std::optional<CameraState> freeCamera_;
+    std::uint32_t index_ = 0;
+    double time_ = 0, geometryTime_ = 0, geometryPreviousTime_ = 0;
+    bool paused_ = false, geometryMade_ = false;
+    std::optional<double> jump_;
+    bool jumped_ = false;
+    std::optional<FrameConditions> lastConditions_;
+    FrameRecord record_;
+    double compileMs_ = 0;
+};
+
+// The passes of a graph with its properties: pass objects of `before` of the same name and type are used
+// again, with every property set anew.
+PassSet reusePasses(const Graph& graph, const Registry& registry, const PassSet& before);
+
+// The resource that holds a port's content under a plan. Throws InputError saying why there is none (left
+// out, a shader module, unknown: with the near name).
+int heldResource(const Plan& plan, const PortRef& port);
+
+} // namespace kestrel

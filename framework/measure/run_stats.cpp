@@ -1,0 +1,85 @@
+#include "measure/run_stats.h"
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace kestrel {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json spreadJson(const Spread& spread) {
+    return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
+}
+
+} // namespace
+
+RunStats gatherStats(Renderer& renderer, const Profile& profile, const std::string& driver) {
+    RunStats stats;
+    stats.graph = renderer.graph().name;
+    stats.scene = renderer.scene().name;
+    stats.camera = renderer.cameraName();
+    stats.size = renderer.options().size;
+    stats.frames = profile.frameCount();
+    stats.seed = renderer.options().seed;
+    stats.renderer = renderer.capabilities().renderer;
+    stats.driver = driver;
+    stats.clock = renderer.executor().clockName();
+    stats.spin = measureSpin();
+    stats.passes = profile.passes();
+    stats.groups = profile.groups();
+    stats.frameMs = profile.frame();
+    stats.leftOut = renderer.plan().leftOut;
+    stats.memory = renderer.plan().memory;
+    stats.values = renderer.last().values;
+    return stats;
+}
+
+std::string statsJson(const RunStats& stats) {
+    Json passes = Json::array();
+    for (const Profile::PassTime& pass : stats.passes)
+        passes.push_back(
+            {{"name", pass.name}, {"type", pass.type}, {"runs", pass.runs}, {"ms", spreadJson(pass.ms)}});
+    Json groups = Json::object();
+    for (const auto& [group, spread] : stats.groups) groups[group] = spreadJson(spread);
+    Json leftOut = Json::array();
+    for (const LeftOut& item : stats.leftOut) leftOut.push_back({{"what", item.what}, {"why", item.why}});
+    Json json = {
+        {"graph", stats.graph},
+        {"scene", stats.scene},
+        {"camera", stats.camera},
+        {"size", {stats.size.width, stats.size.height}},
+        {"frames", stats.frames},
+        {"seed", stats.seed},
+        {"renderer", stats.renderer},
+        {"driver", stats.driver},
+        {"clock", stats.clock},
+        {"spin", {{"one_thread_ms", stats.spin.oneThreadMs}, {"two_threads_ms", stats.spin.twoThreadsMs}}},
+        {"passes", passes},
+        {"groups", groups},
+        {"frame_ms", spreadJson(stats.frameMs)},
+        {"left_out", leftOut},
+        {"memory",
+         {{"transient", stats.memory.transient},
+          {"unshared", stats.memory.unshared},
+          {"persistent", stats.memory.persistent}}},
+        {"values", stats.values},
+    };
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string bytesText(std::uint64_t bytes) {
+    static constexpr const char* units[] = {"KiB", "MiB", "GiB"};
+    if (bytes < 1024) return fmt::format("{} B", bytes);
+    double value = static_cast<double>(bytes) / 1024;
+    size_t unit = 0;
+    for (; value >= 1024 && unit < 2; ++unit) value /= 1024;
+    return fmt::format("{:.1f} {}", value, units[unit]);
+}
+
+std::string memoryText(const MemoryReport& memory) {
+    return fmt::format("{} shared by lifetime (unshared {}), {} that stays", bytesText(memory.transient),
+                       bytesText(memory.unshared), bytesText(memory.persistent));
+}
+
+} // namespace kestrel

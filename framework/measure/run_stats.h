@@ -1,0 +1,35 @@
+// The report of a run, as `render --stats` writes it: scripts rely on its keys; keys are only ever added.
+#pragma once
+#include "core/spin.h"
+#include "measure/profile.h"
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+struct RunStats {
+    std::string graph, scene, camera;
+    Extent size;
+    int frames = 0;
+    std::uint32_t seed = 0;
+    std::string renderer, driver, clock;
+    SpinTest spin;
+    std::vector<Profile::PassTime> passes;
+    std::map<std::string, Spread> groups;
+    Spread frameMs;
+    std::vector<LeftOut> leftOut;
+    MemoryReport memory;
+    std::map<std::string, std::map<std::string, double>> values; // what passes reported in the last frame
+};
+
+// `driver` is the context's. The spin test is run here (a fraction of a second).
+RunStats gatherStats(Renderer& renderer, const Profile& profile, const std::string& driver);
+
+// The JSON text, indented, with a line break at the end.
+std::string statsJson(const RunStats& stats);
+
+// For people: "1.5 MiB", and what a plan needs, in one line.
+std::string bytesText(std::uint64_t bytes);
+std::string memoryText(const MemoryReport& memory);
+
+} // namespace kestrel
