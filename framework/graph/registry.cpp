@@ -68,7 +68,7 @@ std::vector<std::string> PassType::propertyNames() const {
     return names;
 }
 
-bool isIdentifier(std::string_view name) {
+bool isGraphName(std::string_view name) {
     if (name.empty() || name.size() > 64 || name.back() == '_' || name.front() < 'a' || name.front() > 'z')
         return false;
     if (name.find("__") != std::string_view::npos) return false;
@@ -125,7 +125,7 @@ void Registry::add(PassType type) {
     if (const PassType* taken = find(type.name)) note(fmt::format("the name is taken by {}", origin(*taken)));
     std::set<std::string> names;
     const auto noteName = [&](const std::string& name, const char* what) {
-        if (!isIdentifier(name))
+        if (!isGraphName(name))
             note(fmt::format("the {} name '{}' is not lower_case letters, digits and single underscores",
                              what, name));
         if (!names.insert(name).second)

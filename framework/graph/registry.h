@@ -58,7 +58,7 @@ std::optional<std::string> valueMistake(const PropertyInfo& property, const Valu
 
 // Names of passes, ports and properties: [a-z][a-z0-9_]*, at most 64 letters, without "__" and not ending in
 // "_": they become file names, debug labels and parts of GLSL names.
-bool isIdentifier(std::string_view name);
+bool isGraphName(std::string_view name);
 
 class Registry {
 public:

@@ -41,7 +41,7 @@ private:
 
     // ---- passes and their properties
     void checkPass(const GraphPass& pass) {
-        if (!isIdentifier(pass.name))
+        if (!isGraphName(pass.name))
             note(pass.where, fmt::format("the pass name '{}' must be lower_case letters, digits and single "
                                          "underscores, at most 64, and begin with a letter",
                                          pass.name));

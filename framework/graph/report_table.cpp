@@ -1,0 +1,198 @@
+// The table of pass types as text and JSON, and the JSON schema made from it.
+#include "graph/report.h"
+#include "graph/value_text.h"
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace kestrel {
+namespace {
+
+using Out = nlohmann::ordered_json;
+
+std::string_view kindName(PropertyKind kind) {
+    constexpr std::array<std::string_view, 6> names = {"bool", "int", "float", "choice", "text", "vector"};
+    return names.at(static_cast<size_t>(kind));
+}
+
+std::string_view directionName(PortDirection direction) {
+    constexpr std::array<std::string_view, 3> names = {"input", "output", "internal"};
+    return names.at(static_cast<size_t>(direction));
+}
+
+// A number as JSON has it, whole where it is whole, short where it is a float.
+Out number(double value) { return Out::parse(numberText(value)); }
+
+Out standardOf(const PropertyInfo& property) { return Out::parse(jsonText(property.standard)); }
+
+Out propertyJson(const PropertyInfo& property) {
+    Out json = {
+        {"name", property.name}, {"kind", kindName(property.kind)}, {"default", standardOf(property)}};
+    if (std::isfinite(property.minimum)) json["minimum"] = number(property.minimum);
+    if (std::isfinite(property.maximum)) json["maximum"] = number(property.maximum);
+    if (!property.choices.empty()) json["choices"] = property.choices;
+    if (property.components > 0) json["components"] = property.components;
+    json["unit"] = property.unit;
+    json["sentence"] = property.sentence;
+    return json;
+}
+
+std::string rangeText(const PropertyInfo& property) {
+    if (property.kind == PropertyKind::Choice) return fmt::format("{}", fmt::join(property.choices, " | "));
+    const bool below = std::isfinite(property.minimum), above = std::isfinite(property.maximum);
+    std::string text(kindName(property.kind));
+    if (property.components > 0) text += std::to_string(property.components);
+    if (below && above)
+        text += fmt::format(" {} to {}", numberText(property.minimum), numberText(property.maximum));
+    else if (below)
+        text += fmt::format(" at least {}", numberText(property.minimum));
+    else if (above)
+        text += fmt::format(" at most {}", numberText(property.maximum));
+    return property.unit.empty() ? text : text + " " + property.unit;
+}
+
+// ---- schema
+
+Out rangeSchema(const PropertyInfo& property, const char* type) {
+    Out json = {{"type", type}};
+    if (std::isfinite(property.minimum)) json["minimum"] = number(property.minimum);
+    if (std::isfinite(property.maximum)) json["maximum"] = number(property.maximum);
+    return json;
+}
+
+Out valueSchema(const PropertyInfo& property) {
+    switch (property.kind) {
+    case PropertyKind::Bool:
+        return {{"type", "boolean"}};
+    case PropertyKind::Int:
+        return rangeSchema(property, "integer");
+    case PropertyKind::Float:
+        return rangeSchema(property, "number");
+    case PropertyKind::Choice:
+        return {{"enum", property.choices}};
+    case PropertyKind::Text:
+        return {{"type", "string"}};
+    case PropertyKind::Vector:
+        return {{"type", "array"},
+                {"items", rangeSchema(property, "number")},
+                {"minItems", property.components},
+                {"maxItems", property.components}};
+    }
+    return Out::object();
+}
+
+Out propertiesSchema(const PassType& type) {
+    Out properties = Out::object();
+    for (const PropertyInfo& property : type.properties) {
+        Out schema = valueSchema(property);
+        schema["description"] =
+            property.unit.empty() ? property.sentence : property.sentence + " (" + property.unit + ")";
+        schema["default"] = standardOf(property);
+        properties[property.name] = std::move(schema);
+    }
+    return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+}
+
+Out passSchema(const Registry& registry) {
+    Out choices = Out::array();
+    for (const PassType& type : registry.types())
+        choices.push_back({{"if", {{"properties", {{"type", {{"const", type.name}}}}}}},
+                           {"then", {{"properties", {{"properties", {{"$ref", "#/$defs/" + type.name}}}}}}}});
+    Out json = {{"type", "object"},
+                {"required", {"type"}},
+                {"properties",
+                 {{"type", {{"enum", registry.names()}}},
+                  {"properties", {{"type", "object"}}},
+                  {"position",
+                   {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}}},
+                  {"comment", {{"type", "string"}}}}},
+                {"additionalProperties", false}};
+    if (!choices.empty()) json["allOf"] = std::move(choices);
+    return json;
+}
+
+} // namespace
+
+std::string passListText(const Registry& registry) {
+    size_t width = 0;
+    for (const PassType& type : registry.types()) width = std::max(width, type.name.size());
+    std::string text;
+    for (const PassType& type : registry.types())
+        text += fmt::format("{:{}}  {}\n", type.name, width, type.sentence);
+    return text;
+}
+
+std::string passTypeText(const PassType& type) {
+    std::string text = fmt::format("{}: {}\n", type.name, type.sentence);
+    if (!type.plugin.empty()) text += fmt::format("  from {}\n", type.plugin);
+    for (const PortDirection direction :
+         {PortDirection::Input, PortDirection::Output, PortDirection::Internal})
+        for (const PortInfo& port : type.ports)
+            if (port.direction == direction)
+                text +=
+                    fmt::format("  {} {} ({}{}): {}\n", directionName(direction), port.name,
+                                portKindName(port.kind), port.optional ? ", optional" : "", port.sentence);
+    for (const PropertyInfo& property : type.properties)
+        text += fmt::format("  property {} = {} ({}): {}\n", property.name, jsonText(property.standard),
+                            rangeText(property), property.sentence);
+    return text;
+}
+
+std::string passesJson(const std::vector<PassType>& types) {
+    Out json = Out::array();
+    for (const PassType& type : types) {
+        Out ports = Out::array();
+        for (const PortInfo& port : type.ports)
+            ports.push_back({{"name", port.name},
+                             {"kind", portKindName(port.kind)},
+                             {"direction", directionName(port.direction)},
+                             {"optional", port.optional},
+                             {"sentence", port.sentence}});
+        Out properties = Out::array();
+        for (const PropertyInfo& property : type.properties) properties.push_back(propertyJson(property));
+        json.push_back({{"name", type.name},
+                        {"sentence", type.sentence},
+                        {"plugin", type.plugin},
+                        {"ports", std::move(ports)},
+                        {"properties", std::move(properties)}});
+    }
+    return json.dump(2) + "\n";
+}
+
+std::string graphSchema(const Registry& registry) {
+    const std::string portPattern = "^[a-z][a-z0-9_]*\\.[a-z][a-z0-9_]*$";
+    const Out port = {{"type", "string"}, {"pattern", portPattern}};
+    Out definitions = Out::object();
+    definitions["pass"] = passSchema(registry);
+    definitions["port"] = port;
+    for (const PassType& type : registry.types()) definitions[type.name] = propertiesSchema(type);
+    const Out text = {{"type", "string"}};
+    Out json;
+    json["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+    json["title"] = "A Kestrel graph";
+    json["type"] = "object";
+    json["required"] = {"kestrel", "passes"};
+    json["properties"] = {
+        {"kestrel", {{"const", 1}}},
+        {"name", text},
+        {"comment", text},
+        {"scene",
+         {{"type", "object"},
+          {"properties", {{"source", text}, {"camera", text}}},
+          {"additionalProperties", false}}},
+        {"passes",
+         {{"type", "object"},
+          {"propertyNames", {{"pattern", "^[a-z][a-z0-9_]*$"}}},
+          {"additionalProperties", {{"$ref", "#/$defs/pass"}}}}},
+        {"edges",
+         {{"type", "array"},
+          {"items",
+           {{"type", "array"}, {"items", {{"$ref", "#/$defs/port"}}}, {"minItems", 2}, {"maxItems", 2}}}}},
+        {"outputs", {{"type", "array"}, {"items", {{"$ref", "#/$defs/port"}}}}}};
+    json["additionalProperties"] = false;
+    json["$defs"] = std::move(definitions);
+    return json.dump(2) + "\n";
+}
+
+} // namespace kestrel
