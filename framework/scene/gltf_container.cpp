@@ -40,11 +40,14 @@ Location locationOf(const fs::path& path, std::string_view text, size_t byte) {
 
 nlohmann::json parseJson(const fs::path& path, std::string_view text) {
     std::uint64_t values = 0;
-    const auto bound = [&](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+    using Event = nlohmann::json::parse_event_t;
+    const auto bound = [&](int depth, Event event, nlohmann::json&) {
         if (depth > maxDepth)
             throw InputError(Location{path.string()},
                              fmt::format("the JSON is nested more than {} levels deep", maxDepth));
-        if (++values > 2 * maxGltfJsonValues)
+        const bool counts =
+            event == Event::value || event == Event::object_start || event == Event::array_start;
+        if (counts && ++values > maxGltfJsonValues)
             throw InputError(Location{path.string()},
                              fmt::format("the JSON has more than {} values", maxGltfJsonValues));
         return true;

@@ -41,6 +41,8 @@ public:
         Primitive primitive;
         primitive.material = source_.material;
         positionAccessor_ = source_.attributes.at("POSITION");
+        // Read first: only then is the count, which sizes what follows, known to be true.
+        context_.accessors.floats(positionAccessor_, 3, what_ + ".POSITION");
         readIndices(primitive);
         readAttributes(primitive);
         for (size_t i = 0; i < source_.targets.size(); ++i) readTarget(primitive, i);

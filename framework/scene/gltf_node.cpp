@@ -98,8 +98,6 @@ Camera readCamera(const GltfContext& context, size_t index) {
     Camera camera;
     camera.name = source.name;
     camera.orthographic = source.type == "orthographic";
-    if (!json.contains(source.type))
-        context.fail(fmt::format("cameras[{}].{} is missing", index, source.type));
     double aspect = 0, near = 0, far = 0, size = 0;
     if (camera.orthographic) {
         aspect = source.orthographic.xmag / source.orthographic.ymag;
