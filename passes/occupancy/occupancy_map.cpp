@@ -131,9 +131,9 @@ std::vector<Step> OccupancyMap::rasterSteps(const World& world) const {
                        {.port = "occupancy", .access = Access::Storage, .write = true}},
               .modules = {},
               .group = "generation"};
-    step.defines["INTO_MAP"] = "1";
+    step.defines.emplace("INTO_MAP", "1");
     if (method == OccupancyMethod::DominantAxis) {
-        step.defines["FACE_BY_TRIANGLE"] = "1";
+        step.defines.emplace("FACE_BY_TRIANGLE", "1");
         step.shaders.emplace_back("occupancy/raster.geom");
     }
     return {step};
@@ -156,9 +156,9 @@ std::vector<Step> OccupancyMap::columnSteps(const World& world) const {
                   .uses = {{.port = "grid", .access = Access::Uniform}},
                   .modules = {},
                   .group = "generation"};
-        step.defines["INTO_COLUMNS"] = "1";
-        if (method == OccupancyMethod::Interlock) step.defines["BY_INTERLOCK"] = "1";
-        if (method == OccupancyMethod::FramebufferFetch) step.defines["BY_FETCH"] = "1";
+        step.defines.emplace("INTO_COLUMNS", "1");
+        if (method == OccupancyMethod::Interlock) step.defines.emplace("BY_INTERLOCK", "1");
+        if (method == OccupancyMethod::FramebufferFetch) step.defines.emplace("BY_FETCH", "1");
         for (int half = 0; half < (high ? 2 : 1); ++half) {
             const std::string port = half == 0 ? axisPorts[axis] : highAxisPorts[axis];
             step.uses.push_back(

@@ -62,7 +62,7 @@ Step rotateStep(const Maps& maps, const Desc& base, const Capabilities& capabili
               .modules = {},
               .group = "generation"};
     if (!fitsTexels(base, capabilities)) {
-        step.defines["BASE_STORAGE"] = "1";
+        step.defines.emplace("BASE_STORAGE", "1");
         step.uses.front().access = Access::Storage;
     }
     return step;

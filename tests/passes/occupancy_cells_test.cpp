@@ -1,0 +1,195 @@
+// Cells: bits of columns, the grid around a scene, and triangles against cubes, held against clipping in
+// double precision.
+#include "passes/occupancy/grid.h"
+#include "shared/triangle_cell.h"
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+
+namespace kestrel::test {
+namespace {
+
+TEST(OccupancyCells, LowBits) {
+    EXPECT_EQ(shared::lowBits(0), 0u);
+    EXPECT_EQ(shared::lowBits(1), 1u);
+    EXPECT_EQ(shared::lowBits(31), 0x7fffffffu);
+    EXPECT_EQ(shared::lowBits(32), 0xffffffffu);
+}
+
+TEST(OccupancyCells, ColumnMaskHoldsTheCellsFromFirstToLast) {
+    for (int first = -1; first <= 256; ++first) {
+        for (int last = -1; last <= 256; ++last) {
+            for (int w = 0; w < 8; ++w) {
+                std::uint32_t expected = 0;
+                for (int bit = 0; bit < 32; ++bit)
+                    if (32 * w + bit >= first && 32 * w + bit <= last) expected |= 1u << bit;
+                ASSERT_EQ(shared::columnMask(first, last, w), expected)
+                    << first << " to " << last << ", word " << w;
+            }
+        }
+    }
+}
+
+TEST(OccupancyCells, EveryCellHasItsOwnBit) {
+    std::vector<std::uint32_t> seen(32 * 32);
+    for (int z = 0; z < 32; ++z)
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 32; ++x) {
+                std::uint32_t& word = seen.at(static_cast<size_t>(shared::occupancyWord(x, y, z, 32)));
+                ASSERT_EQ(word >> z & 1u, 0u);
+                word |= 1u << z;
+            }
+    for (const std::uint32_t word : seen) EXPECT_EQ(word, 0xffffffffu);
+}
+
+TEST(OccupancyCells, TheGridHoldsTheSphereWithItsMargin) {
+    for (const float radius : {1e-4f, 1.0f, 1e4f}) {
+        for (const int n : {32, 64, 128, 256}) {
+            const Sphere sphere{{radius, -2 * radius, 3 * radius}, radius};
+            for (const glm::vec3 jitter : {glm::vec3(0), glm::vec3(0.5f), glm::vec3(-0.5f)}) {
+                const shared::OccupancyGrid grid = occupancyGrid(sphere, n, jitter);
+                for (int k = 0; k < 3; ++k) {
+                    glm::vec3 end = sphere.centre;
+                    end[k] += radius;
+                    EXPECT_LT(shared::cellsOf(grid, end)[k], float(n) - 0.49f);
+                    end[k] -= 2 * radius;
+                    EXPECT_GT(shared::cellsOf(grid, end)[k], 0.49f);
+                }
+                const glm::vec3 cells(1, 2, 3);
+                EXPECT_LT(glm::length(shared::cellsOf(grid, shared::fromCells(grid, cells)) - cells), 1e-3f);
+            }
+        }
+    }
+}
+
+TEST(OccupancyCells, ASphereWithoutExtentHasAUsableGrid) {
+    for (const float radius : {0.0f, 1e-42f, std::numeric_limits<float>::infinity()}) {
+        EXPECT_FALSE(hasExtent({glm::vec3(0), radius}, 64));
+        EXPECT_EQ(occupancyGrid({glm::vec3(0), radius}, 64).cellSize, 1.0f);
+    }
+}
+
+TEST(OccupancyCells, ResolutionOfABuffer) {
+    for (const int n : {32, 64, 128, 256})
+        EXPECT_EQ(occupancyResolution(Desc::buffer(occupancyBytes(n), Format::R32UI)), n);
+    EXPECT_FALSE(occupancyResolution(Desc::buffer(occupancyBytes(64), Format::R32F)));
+    EXPECT_FALSE(occupancyResolution(Desc::buffer(100, Format::R32UI)));
+    EXPECT_FALSE(occupancyResolution(Desc::texture2D(Format::R32UI, {64, 64, 1})));
+}
+
+// Does the triangle meet the cube of half width `half` around 0? By clipping the triangle to its six sides.
+bool meetsByClipping(std::vector<glm::dvec3> polygon, double half) {
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double side : {1.0, -1.0}) {
+            std::vector<glm::dvec3> kept;
+            for (size_t i = 0; i < polygon.size(); ++i) {
+                const glm::dvec3 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
+                const double dp = half - side * p[axis], dq = half - side * q[axis];
+                if (dp >= 0) kept.push_back(p);
+                if ((dp >= 0) != (dq >= 0)) kept.push_back(p + (q - p) * (dp / (dp - dq)));
+            }
+            polygon = kept;
+        }
+    }
+    return !polygon.empty();
+}
+
+// Triangles in a grid of n cells: of all sizes and shapes, many on the cells' borders.
+std::vector<glm::vec3> triangleOf(std::mt19937& random, float n, int kind) {
+    std::uniform_real_distribution<float> unit(0, 1);
+    const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)) * n; };
+    const float size = n * std::pow(10.0f, -3 * unit(random));
+    const glm::vec3 a = point();
+    glm::vec3 b = a + size * (point() / n - 0.5f), c = a + size * (point() / n - 0.5f);
+    switch (kind) {
+    case 1: // on the borders
+        return {glm::round(a), glm::round(b), glm::round(c)};
+    case 2: // in a plane between cells
+        return {{a.x, a.y, std::round(a.z)}, {b.x, b.y, std::round(a.z)}, {c.x, c.y, std::round(a.z)}};
+    case 3: // a sliver
+        return {a, b, b + 1e-5f * (c - a)};
+    case 4: // a segment
+        return {a, b, 0.5f * (a + b)};
+    case 5: // a point
+        return {a, a, a};
+    case 6: // a point on a corner of cells
+        return {glm::round(a), glm::round(a), glm::round(a)};
+    default:
+        return {a, b, c};
+    }
+}
+
+TEST(OccupancyCells, TrianglesMeetTheCubesThatClippingSays) {
+    std::mt19937 random(1);
+    int met = 0, tests = 0;
+    for (int i = 0; i < 30'000; ++i) {
+        const std::vector<glm::vec3> p = triangleOf(random, 8, i % 7);
+        const glm::vec3 cell(random() % 8, random() % 8, random() % 8);
+        const glm::vec3 centre = cell + 0.5f;
+        const bool meets = shared::triangleMeetsCube(p[0] - centre, p[1] - centre, p[2] - centre);
+        std::vector<glm::dvec3> polygon;
+        for (const glm::vec3& corner : p) polygon.push_back(glm::dvec3(corner) - glm::dvec3(centre));
+        // Rounding decides within a hundred thousandth of a cell of a border, and nowhere else.
+        if (meetsByClipping(polygon, 0.5 - 1e-5)) {
+            ASSERT_TRUE(meets) << i;
+        }
+        if (!meetsByClipping(polygon, 0.5 + 1e-5)) {
+            ASSERT_FALSE(meets) << i;
+        }
+        met += meets;
+        ++tests;
+    }
+    EXPECT_GT(met, tests / 300);
+}
+
+TEST(OccupancyCells, TouchingCounts) {
+    const glm::vec3 corner(0.5f);
+    EXPECT_TRUE(shared::triangleMeetsCube(corner, corner, corner));
+    EXPECT_TRUE(shared::triangleMeetsCube({-2, -2, 0.5f}, {2, -2, 0.5f}, {0, 2, 0.5f}));
+    EXPECT_FALSE(shared::triangleMeetsCube({-2, -2, 0.5001f}, {2, -2, 0.5001f}, {0, 2, 0.5001f}));
+}
+
+// The walk by columns leaves out no cell that the triangle meets, and its nests stay short.
+TEST(OccupancyCells, TheWalkPassesEveryCellThatIsMet) {
+    std::mt19937 random(2);
+    constexpr int n = 24;
+    for (int i = 0; i < 2100; ++i) {
+        const std::vector<glm::vec3> p = triangleOf(random, n, i % 7);
+        const shared::TriangleWalk walk = shared::triangleWalk(p[0], p[1], p[2], n);
+        std::vector<bool> passed(n * n * n);
+        for (int y = walk.first.y; y <= walk.last.y; ++y) {
+            for (int x = walk.first.x; x <= walk.last.x; ++x) {
+                const glm::ivec2 range = shared::walkColumn(walk, x, y);
+                for (int z = range.x; z <= range.y; ++z) {
+                    const glm::ivec3 cell = shared::axisBack({x, y, z}, walk.axis);
+                    for (int k = 0; k < 3; ++k) ASSERT_TRUE(cell[k] >= 0 && cell[k] < n);
+                    passed[static_cast<size_t>((cell.z * n + cell.y) * n + cell.x)] = true;
+                }
+            }
+        }
+        for (int z = 0; z < n; ++z)
+            for (int y = 0; y < n; ++y)
+                for (int x = 0; x < n; ++x) {
+                    const glm::vec3 centre = glm::vec3(x, y, z) + 0.5f;
+                    if (!shared::triangleMeetsCube(p[0] - centre, p[1] - centre, p[2] - centre)) continue;
+                    ASSERT_TRUE(passed[static_cast<size_t>((z * n + y) * n + x)])
+                        << "kind " << i % 7 << ": " << x << " " << y << " " << z;
+                }
+    }
+}
+
+// Of a well-shaped triangle few cells stand over each other along the chosen axis.
+TEST(OccupancyCells, TheWalkIsThin) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(0, 256);
+    for (int i = 0; i < 200; ++i) {
+        const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+        const glm::vec3 a = point(), b = point(), c = point();
+        if (glm::length(glm::cross(b - a, c - a)) < 2000) continue;
+        const shared::TriangleWalk walk = shared::triangleWalk(a, b, c, 256);
+        EXPECT_LT(walk.slack, 1.2f);
+    }
+}
+
+} // namespace
+} // namespace kestrel::test

@@ -1,0 +1,38 @@
+// What an exact occupancy map must be: every cell of every triangle's bounding box tested one by one.
+#pragma once
+#include "scene/geometry.h"
+#include "shared/occupancy.h"
+#include "shared/triangle_cell.h"
+#include <algorithm>
+#include <vector>
+
+namespace kestrel::test {
+
+// The cells from floor(low) - 1 to floor(high) + 1 within the grid: rounding never reaches farther.
+inline std::pair<glm::ivec3, glm::ivec3> cellsAround(const glm::vec3& a, const glm::vec3& b,
+                                                     const glm::vec3& c, int n) {
+    const glm::ivec3 low(glm::floor(glm::min(a, glm::min(b, c))));
+    const glm::ivec3 high(glm::floor(glm::max(a, glm::max(b, c))));
+    return {glm::clamp(low - 1, 0, n - 1), glm::clamp(high + 1, 0, n - 1)};
+}
+
+inline std::vector<std::uint32_t> oracleMap(const Geometry& geometry, const shared::OccupancyGrid& grid) {
+    const int n = static_cast<int>(grid.resolution);
+    std::vector<std::uint32_t> map(static_cast<size_t>(n) * n * n / 32);
+    for (size_t i = 0; i < geometry.indices.size(); i += 3) {
+        glm::vec3 p[3];
+        for (size_t k = 0; k < 3; ++k)
+            p[k] = shared::cellsOf(grid, geometry.positions[geometry.indices[i + k]]);
+        const auto [first, last] = cellsAround(p[0], p[1], p[2], n);
+        for (int z = first.z; z <= last.z; ++z)
+            for (int y = first.y; y <= last.y; ++y)
+                for (int x = first.x; x <= last.x; ++x) {
+                    const glm::vec3 centre = glm::vec3(x, y, z) + 0.5f;
+                    if (shared::triangleMeetsCube(p[0] - centre, p[1] - centre, p[2] - centre))
+                        map[static_cast<size_t>(shared::occupancyWord(x, y, z, n))] |= 1u << (z & 31);
+                }
+    }
+    return map;
+}
+
+} // namespace kestrel::test
