@@ -6,6 +6,7 @@
 #include "gl/loader.h"
 #include "gl/requirements.h"
 #include <fmt/format.h>
+#include <utility>
 
 namespace kestrel::gl {
 namespace {
@@ -76,6 +77,20 @@ void setFixedState() {
 // Whose functions glad's table holds.
 void (*(*loadedFrom)(const char*))() = nullptr;
 
+thread_local Context* current = nullptr;
+
+std::unique_ptr<Context> createBackend(const ContextOptions& options) {
+    switch (options.backend) {
+    case Backend::Egl:
+        return createEglContext(options);
+    case Backend::OsMesa:
+        return createOsMesaContext(options);
+    case Backend::Window:
+        return createWindowContext(options);
+    }
+    throw MachineError("no such backend");
+}
+
 } // namespace
 
 Backend backendFromName(const std::string& name) {
@@ -88,18 +103,38 @@ Backend backendFromName(const std::string& name) {
 
 std::unique_ptr<Context> Context::create(const ContextOptions& options) {
     overrideVersion();
-    switch (options.backend) {
-    case Backend::Egl:
-        return createEglContext(options);
-    case Backend::OsMesa:
-        return createOsMesaContext(options);
-    case Backend::Window:
-        return createWindowContext(options);
+    Context* const before = std::exchange(current, nullptr);
+    if (before != nullptr) before->unbind();
+    try {
+        return createBackend(options);
+    } catch (...) {
+        if (before != nullptr) before->makeCurrent();
+        throw;
     }
-    throw MachineError("no such backend");
 }
 
 std::uint64_t Context::severeErrors() { return severeErrorCount(); }
+
+Context::~Context() {
+    if (current == this) current = nullptr;
+    if (current == nullptr) return;
+    // The backend has just destroyed another context, which may have touched that dispatch table.
+    try {
+        current->makeCurrent();
+    } catch (const MachineError& error) {
+        logError("{}", error.what());
+    }
+}
+
+void Context::makeCurrent() {
+    // A window system refuses a second context on a thread that has one; and EGL and OSMesa of Mesa share one
+    // dispatch table a thread, so what is current already is bound anew all the same.
+    if (current != nullptr) current->unbind();
+    current = nullptr;
+    bind();
+    current = this;
+    loadFunctions();
+}
 
 void Context::loadFunctions() const {
     if (loadedFrom == getProcAddress_) return;
@@ -111,7 +146,7 @@ void Context::loadFunctions() const {
 void Context::finishCreation(GetProcAddress getProcAddress, bool debug) {
     getProcAddress_ = getProcAddress;
     loadedFrom = nullptr; // what is there depends on the context's version too
-    loadFunctions();
+    makeCurrent();
     requireOpenGl46(glString(GL_VERSION), glString(GL_RENDERER), listedExtensions());
     if (debug) enableDebugOutput();
     capabilities_ = readCapabilities();

@@ -24,9 +24,12 @@ public:
     // set before the first context unless the user has set them, and afterwards each extension that makes
     // up 4.6 is checked. Throws MachineError naming what lacks.
     static std::unique_ptr<Context> create(const ContextOptions& options = {});
-    virtual ~Context() = default;
+    virtual ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
 
-    virtual void makeCurrent() = 0;
+    // On the calling thread, in place of the context that was current, of whatever backend.
+    void makeCurrent();
     // Window only: shows the default framebuffer and handles events; false once the user has closed it.
     virtual bool present() { return true; }
     // Pixels of the default framebuffer; {0, 0} where there is none.
@@ -42,15 +45,16 @@ public:
 
 protected:
     using GetProcAddress = void (*(*)(const char*))();
-    // For the makeCurrent() of each backend: entry points differ between EGL, OSMesa and the window.
-    void loadFunctions() const;
-    // With the new context current: functions, requirements, capabilities, debug output, fixed state.
+    Context() = default;
+    virtual void bind() = 0;
+    virtual void unbind() = 0;
+    // Makes the new context current; then functions, requirements, capabilities, debug output, fixed state.
     void finishCreation(GetProcAddress getProcAddress, bool debug);
 
 private:
+    // Entry points differ between EGL, OSMesa and the window.
+    void loadFunctions() const;
     GetProcAddress getProcAddress_ = nullptr;
-
-protected:
     Capabilities capabilities_;
     std::string driver_;
 };

@@ -100,17 +100,15 @@ public:
     EglContext(const EglContext&) = delete;
     EglContext& operator=(const EglContext&) = delete;
 
-    void makeCurrent() override {
-        // Bound anew even if EGL believes it to be current: OSMesa shares the thread's dispatch table with it
-        // and changes it behind EGL's back.
-        egl_.eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+protected:
+    void bind() override {
         if (egl_.eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE)
             throw MachineError(
                 fmt::format("eglMakeCurrent without a surface failed (error 0x{:x}): the driver lacks "
                             "EGL_KHR_surfaceless_context; install libgl1-mesa-dri",
                             egl_.eglGetError()));
-        if (ready_) loadFunctions();
     }
+    void unbind() override { egl_.eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
 
 private:
     void createOn(const Candidate& candidate, const ContextOptions& options) {
@@ -123,9 +121,7 @@ private:
         if (egl_.eglBindAPI(EGL_OPENGL_API) == EGL_FALSE)
             throw MachineError("EGL offers no desktop OpenGL, only OpenGL ES: install libgl1-mesa-dri");
         createContext();
-        makeCurrent();
         finishCreation(egl_.eglGetProcAddress, options.debug);
-        ready_ = true;
         logDebug("EGL: {} display", candidate.name);
     }
 
@@ -152,7 +148,7 @@ private:
     // The display stays initialised: it is the process's, and other contexts may live on it.
     void release() {
         if (context_ == EGL_NO_CONTEXT) return;
-        egl_.eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        unbind();
         egl_.eglDestroyContext(display_, context_);
         context_ = EGL_NO_CONTEXT;
     }
@@ -160,7 +156,6 @@ private:
     const Egl& egl_;
     EGLDisplay display_ = EGL_NO_DISPLAY;
     EGLContext context_ = EGL_NO_CONTEXT;
-    bool ready_ = false;
 };
 
 } // namespace

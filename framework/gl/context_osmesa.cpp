@@ -73,9 +73,7 @@ public:
             throw MachineError("OSMesa refuses an OpenGL 4.6 core context: it needs Mesa 22 or newer with "
                                "MESA_GL_VERSION_OVERRIDE unset or at least 4.6");
         try {
-            makeCurrent();
             finishCreation(mesa_.getProcAddress, options.debug);
-            ready_ = true;
         } catch (...) {
             mesa_.destroyContext(context_);
             throw;
@@ -85,11 +83,12 @@ public:
     OsMesaContext(const OsMesaContext&) = delete;
     OsMesaContext& operator=(const OsMesaContext&) = delete;
 
-    void makeCurrent() override {
+protected:
+    void bind() override {
         if (mesa_.makeCurrent(context_, frame_, 0x1401 /* GL_UNSIGNED_BYTE */, side, side) == 0)
             throw MachineError("OSMesa cannot make its context current: install a newer libosmesa6");
-        if (ready_) loadFunctions();
     }
+    void unbind() override { mesa_.makeCurrent(nullptr, nullptr, 0, 0, 0); }
 
 private:
     // A context must have a frame to draw into; all that Kestrel draws goes into textures.
@@ -97,7 +96,6 @@ private:
     const OsMesa& mesa_;
     OSMesaContext context_ = nullptr;
     unsigned char frame_[4 * side * side] = {};
-    bool ready_ = false;
 };
 
 } // namespace

@@ -48,9 +48,7 @@ public:
                 "no window with an OpenGL 4.6 core context ({}): install libgl1-mesa-dri", reason));
         }
         try {
-            glfwMakeContextCurrent(window_);
             finishCreation(glfwGetProcAddress, options.debug);
-            ready_ = true;
         } catch (...) {
             close();
             throw;
@@ -59,11 +57,6 @@ public:
     ~WindowContext() override { close(); }
     WindowContext(const WindowContext&) = delete;
     WindowContext& operator=(const WindowContext&) = delete;
-
-    void makeCurrent() override {
-        glfwMakeContextCurrent(window_);
-        if (ready_) loadFunctions();
-    }
 
     bool present() override {
         glfwSwapBuffers(window_);
@@ -80,6 +73,10 @@ public:
 
     [[nodiscard]] void* window() const override { return window_; }
 
+protected:
+    void bind() override { glfwMakeContextCurrent(window_); }
+    void unbind() override { glfwMakeContextCurrent(nullptr); }
+
 private:
     void close() {
         glfwDestroyWindow(window_);
@@ -87,7 +84,6 @@ private:
     }
 
     GLFWwindow* window_ = nullptr;
-    bool ready_ = false;
 };
 
 } // namespace

@@ -51,10 +51,4 @@ void enableDebugOutput() {
 
 std::uint64_t severeErrorCount() { return severe; }
 
-DebugGroup::DebugGroup(const char* name) {
-    constexpr GLsizei terminated = -1;
-    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, terminated, name);
-}
-DebugGroup::~DebugGroup() { glPopDebugGroup(); }
-
 } // namespace kestrel::gl

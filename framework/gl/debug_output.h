@@ -9,13 +9,4 @@ void enableDebugOutput();
 
 std::uint64_t severeErrorCount();
 
-// Opens a named group (also seen by GPU debuggers) while it lives.
-class DebugGroup {
-public:
-    explicit DebugGroup(const char* name);
-    ~DebugGroup();
-    DebugGroup(const DebugGroup&) = delete;
-    DebugGroup& operator=(const DebugGroup&) = delete;
-};
-
 } // namespace kestrel::gl

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <fmt/format.h>
 
 namespace kestrel::gl {
@@ -143,7 +144,10 @@ Texture::Texture(const Desc& desc, const std::string& label)
     : desc_(desc)
     , serial_(nextSerial()) {
     requireSize(desc, label);
-    KESTREL_CHECK_LE(1, desc.mips);
+    const Extent& extent = desc.extent;
+    const std::uint32_t slices = desc.kind == ResourceKind::Texture3D ? extent.depth : 1;
+    KESTREL_CHECK(desc.mips >= 1 && static_cast<unsigned>(desc.mips) <=
+                                        std::bit_width(std::max({extent.width, extent.height, slices})));
     Name texture = 0;
     glCreateTextures(targetOf(desc.kind), 1, &texture);
     handle_ = Handle<deleteTexture>(texture);

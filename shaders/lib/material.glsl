@@ -54,9 +54,13 @@ void placeTexture(TextureRecord record, TexCoords coords, out vec3 at, out vec2 
     vec2 uv = turn * (second ? coords.second : coords.first) + record.offset;
     dx = turn * (second ? coords.secondDx : coords.firstDx);
     dy = turn * (second ? coords.secondDy : coords.firstDy);
-    vec2 source = vec2(record.source);
-    if ((record.flags & textureFlagNearest) != 0u) uv = (floor(uv * source) + 0.5) / source;
     float side = float(record.side);
+    if ((record.flags & textureFlagNearest) != 0u) {
+        // To the middle of the image's texel, then of the array's texel there, where the filter has no effect.
+        vec2 source = vec2(record.source);
+        uv = (floor(uv * source) + 0.5) / source;
+        uv = (floor(uv * side) + 0.5) / side;
+    }
     at = vec3(wrapTexCoord(uv.x, (record.flags >> textureWrapShiftS) & 3u, side),
               wrapTexCoord(uv.y, (record.flags >> textureWrapShiftT) & 3u, side), float(record.place >> 8u));
 }

@@ -163,6 +163,25 @@ TEST_F(ContextDeathTest, OsMesaWithTooLowAVersionSaysSo) {
         ::testing::ExitedWithCode(3), "OSMesa");
 }
 
+TEST(Context, AWindowHasAFramebufferAndStaysOpen) {
+    gl::ContextOptions options;
+    options.backend = gl::Backend::Window;
+    options.windowSize = {320, 200, 1};
+    std::unique_ptr<gl::Context> window;
+    try {
+        window = gl::Context::create(options);
+    } catch (const MachineError& error) {
+        GTEST_SKIP() << error.what();
+    }
+    EXPECT_THAT(window->capabilities().version, HasSubstr("4.6"));
+    EXPECT_EQ(window->framebufferExtent(), options.windowSize);
+    EXPECT_NE(window->window(), nullptr);
+    EXPECT_TRUE(window->present());
+    gl::Buffer buffer(16, "in the window's context");
+    buffer.clear(5);
+    EXPECT_EQ(test::as<std::uint32_t>(buffer.download())[0], 5U);
+}
+
 TEST_F(ContextDeathTest, AWindowNeedsAWindowSystem) {
     EXPECT_EXIT(
         {

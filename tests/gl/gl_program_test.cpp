@@ -281,6 +281,11 @@ TEST_F(ProgramCacheTest, DamagedFilesAreIgnoredAndWrittenAnew) {
         +[](const std::filesystem::path& path, std::uintmax_t) {
             std::fstream stream(path, std::ios::in | std::ios::out | std::ios::binary);
             stream.put('X'); // the magic number
+        },
+        +[](const std::filesystem::path& path, std::uintmax_t) {
+            std::fstream stream(path, std::ios::in | std::ios::out | std::ios::binary);
+            stream.seekp(40); // the driver's format: all is whole, and the driver refuses it
+            stream.put('\x34').put('\x12');
         }};
     for (const auto damage : damages) {
         damage(file, size);
