@@ -20,6 +20,10 @@ public:
                     users_[use.source].insert(i);
                     if (use.use.previous) history_.insert(use.source);
                 }
+            for (const Output& output :
+                 node.real.outputs) // an update reads the old content, or is a copy of it
+                if (!output.updates.empty())
+                    if (const auto old = originOfInput(network, i, output.updates)) users_[*old].insert(i);
         }
         for (const Source& source : network.wanted) wanted_.insert(origin(network, source));
     }

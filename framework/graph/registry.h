@@ -63,7 +63,7 @@ bool isGraphName(std::string_view name);
 class Registry {
 public:
     // Throws InputError if the name is taken (says by which plugin), a port or property name occurs twice or
-    // is no identifier, or a default is not a legal value of its property.
+    // is no such name, or a default is not a legal value of its property.
     void add(PassType type);
     [[nodiscard]] const PassType* find(std::string_view name) const;
     [[nodiscard]] const std::vector<PassType>& types() const { return types_; } // sorted by name

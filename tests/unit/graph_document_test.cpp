@@ -225,9 +225,9 @@ TEST(GraphValidate, NamesUnconnectedInputsAndCyclesWithTheirPath) {
 
 TEST(GraphValidate, PassNamesBecomeFileNames) {
     for (const char* name : {"", "a__b", "a_", "_a", "1a", "ä", "a/b", "a b"})
-        EXPECT_FALSE(isIdentifier(name)) << name;
-    for (const char* name : {"a", "a_b", "a1", "gbuffer"}) EXPECT_TRUE(isIdentifier(name)) << name;
-    EXPECT_FALSE(isIdentifier(std::string(65, 'a')));
+        EXPECT_FALSE(isGraphName(name)) << name;
+    for (const char* name : {"a", "a_b", "a1", "gbuffer"}) EXPECT_TRUE(isGraphName(name)) << name;
+    EXPECT_FALSE(isGraphName(std::string(65, 'a')));
 }
 
 TEST(GraphSetting, SetsPropertiesByTheirKindAndMovesEdges) {
