@@ -100,8 +100,8 @@ TEST_F(ProgramTest, BindsWhatTheSlotsSay) {
     EXPECT_EQ(test::as<std::uint32_t>(result.download())[0], 21320U);
 }
 
-TEST_F(ProgramTest, AMissingBarrierIsSeenWhereADrawWritesWhatADispatchReads) {
-    // The one case in which a CPU driver, too, runs ahead: draws are deferred, dispatches are not.
+TEST_F(ProgramTest, ABarrierShowsADispatchWhatADrawHasWritten) {
+    // The one case in which a CPU driver, too, shows a missing barrier: draws are deferred, dispatches are not.
     const std::string fragment = "layout(std430) buffer Values { uint values[]; };\n"
                                  "void main() { values[int(gl_FragCoord.x)] = 7u; }\n";
     const gl::Program draw(composeTexts({{"t.vert", test::fullscreenVertex()}, {"t.frag", fragment}}), {},
