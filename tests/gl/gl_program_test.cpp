@@ -101,7 +101,8 @@ TEST_F(ProgramTest, BindsWhatTheSlotsSay) {
 }
 
 TEST_F(ProgramTest, ABarrierShowsADispatchWhatADrawHasWritten) {
-    // The one case in which a CPU driver, too, shows a missing barrier: draws are deferred, dispatches are not.
+    // The one case in which a CPU driver, too, shows a missing barrier: draws are deferred, dispatches are
+    // not.
     const std::string fragment = "layout(std430) buffer Values { uint values[]; };\n"
                                  "void main() { values[int(gl_FragCoord.x)] = 7u; }\n";
     const gl::Program draw(composeTexts({{"t.vert", test::fullscreenVertex()}, {"t.frag", fragment}}), {},
