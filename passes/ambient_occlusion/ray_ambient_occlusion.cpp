@@ -73,14 +73,14 @@ Declaration RayAmbientOcclusion::declare(const World& world, const Inputs& input
                   .modules = {{"tracer", takes::AnyHit | (snap ? takes::BearsSnap : 0)}},
                   .group = "tracing"};
         step.defines.merge(materialDefines(world.facts));
-        if (i > 0) step.defines["CONTINUES"] = "1";
-        if (i + 1 == count) step.defines["ENDS"] = "1";
+        if (i > 0) step.defines.emplace("CONTINUES", "1");
+        if (i + 1 == count) step.defines.emplace("ENDS", "1");
         if (snaps) {
-            step.defines["SNAPS"] = "1";
-            if (estimator == Estimator::CosineRatio) step.defines["COSINE_RATIO"] = "1";
+            step.defines.emplace("SNAPS", "1");
+            if (estimator == Estimator::CosineRatio) step.defines.emplace("COSINE_RATIO", "1");
             // Between steps the sum of weights must live somewhere, also if nobody else reads it.
             if (weighted || count > 1) {
-                step.defines["WEIGHT"] = "1";
+                step.defines.emplace("WEIGHT", "1");
                 step.uses.push_back({.port = "weight", .access = Access::Image, .write = true});
                 if (!weighted && i == 0) declaration.outputs.push_back(weight);
             }

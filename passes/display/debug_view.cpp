@@ -80,8 +80,8 @@ Declaration DebugView::declareTexture(const Desc& desc) const {
                        {.port = "image", .access = Access::Image, .write = true}},
               .modules = {},
               .group = "display"};
-    if (desc.kind == ResourceKind::Texture2DArray) step.defines["LAYERED"] = "1";
-    if (desc.kind == ResourceKind::Texture3D) step.defines["SOLID"] = "1";
+    if (desc.kind == ResourceKind::Texture2DArray) step.defines.emplace("LAYERED", "1");
+    if (desc.kind == ResourceKind::Texture3D) step.defines.emplace("SOLID", "1");
     if (desc.kind == ResourceKind::TextureCube)
         declaration.problems.push_back({"source", "is a cube map, which cannot be shown"});
     if (show == Show::HeatMap) step.defines["COLOUR_TABLE"] = colourTable();

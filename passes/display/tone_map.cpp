@@ -33,8 +33,8 @@ Declaration ToneMap::declare(const World&, const Inputs& inputs, const Demand&) 
                        {.port = "image", .access = Access::Image, .write = true}},
               .modules = {},
               .group = "display"};
-    if (format.channels == 1) step.defines["GREY"] = "1";
-    if (encode) step.defines["ENCODE"] = "1";
+    if (format.channels == 1) step.defines.emplace("GREY", "1");
+    if (encode) step.defines.emplace("ENCODE", "1");
     declaration.steps.push_back(std::move(step));
     declaration.depends = Causes::Properties;
     return declaration;

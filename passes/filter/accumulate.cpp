@@ -62,7 +62,7 @@ Declaration Accumulate::declare(const World&, const Inputs& inputs, const Demand
             declaration.problems.push_back(
                 {"weight", fmt::format("is {} but signal is {}", describe(inputs["weight"].desc),
                                        describe(signal.desc))});
-        step.defines["WEIGHTED"] = "1";
+        step.defines.emplace("WEIGHTED", "1");
         step.defines["WEIGHT_FORMAT"] = std::string(formatInfo(inputs["weight"].desc.format).name);
         step.uses.push_back({.port = "weight", .access = Access::Image});
         step.uses.push_back({.port = "total", .access = Access::Image, .write = true});

@@ -57,7 +57,7 @@ Declaration BilateralBlur::declare(const World&, const Inputs& inputs, const Dem
                      {.port = to, .access = Access::Image, .write = true}},
             .modules = {},
             .group = "filter"};
-        if (slope) step.defines["SLOPE"] = "1";
+        if (slope) step.defines.emplace("SLOPE", "1");
         declaration.steps.push_back(std::move(step));
     };
     direction("horizontal", "signal", "half", "ivec2(1, 0)");

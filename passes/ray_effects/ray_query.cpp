@@ -36,7 +36,7 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
                                          (snap ? takes::BearsSnap : 0)}},
               .group = "tracing"};
     step.defines.merge(materialDefines(world.facts));
-    if (query == Query::Closest) step.defines["CLOSEST"] = "1";
+    if (query == Query::Closest) step.defines.emplace("CLOSEST", "1");
     declaration.steps.push_back(std::move(step));
     declaration.depends = Causes::Properties;
     return declaration;
