@@ -80,6 +80,8 @@ void findPossibleCauses(const Network& network, Node& node) {
         };
     };
     node.possible = node.modulePossible = withinFacts(declaration.depends, network.world.facts);
+    // What always runs may hold something new in every frame.
+    if (declaration.always) node.possible = node.modulePossible = node.possible | Causes::Frame;
     for (const Step& step : declaration.steps) readsOfStep(node, step, gather(node.possible));
     for (const Output& output : declaration.outputs)
         if (!output.updates.empty()) gather(node.possible)(output.updates, 0);

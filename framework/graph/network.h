@@ -40,7 +40,7 @@ struct Node {
 
     Causes possible = Causes::None;       // for which the steps can run over the timeline
     Causes modulePossible = Causes::None; // for which a consumer of its modules can run
-    [[nodiscard]] bool everyFrame() const { return real.always || any(possible & Causes::Frame); }
+    [[nodiscard]] bool everyFrame() const { return any(possible & Causes::Frame); }
     [[nodiscard]] const std::string& name() const { return document->name; }
 };
 

@@ -1,6 +1,7 @@
 // Compiler stage: the order of execution, and which in-place updates can do without a copy.
 #include "core/check.h"
 #include "graph/network.h"
+#include <algorithm>
 
 namespace kestrel::compiler {
 namespace {
@@ -50,7 +51,7 @@ private:
         const Node& producer = network_.at(old->node);
         const Output* before = findOutput(producer.real, old->port);
         if (before == nullptr || before->keeps || before->constant || !producer.everyFrame() ||
-            wanted_.contains(*old) || history_.contains(*old))
+            wanted_.contains(*old) || history_.contains(*old) || readsOldTooLate(updater, output.port, *old))
             return;
         const std::set<int>& readers = users_[*old];
         for (const int reader : readers)
@@ -59,6 +60,21 @@ private:
             if (reader != updater && reader != old->node)
                 before_[static_cast<size_t>(reader)].insert(updater);
         order_.inPlace[{updater, output.port}] = *old;
+    }
+
+    // Whether the updater itself still reads the old content in the step that begins to change it, or later.
+    [[nodiscard]] bool readsOldTooLate(int updater, const std::string& port, const Source& old) const {
+        bool changed = false;
+        for (const Step& step : network_.at(updater).real.steps) {
+            const std::vector<BoundUse> uses = boundUses(network_, updater, step);
+            const auto binds = [&](const Source& source) {
+                return std::any_of(uses.begin(), uses.end(),
+                                   [&](const BoundUse& use) { return use.source == source; });
+            };
+            changed = changed || binds({updater, port});
+            if (changed && binds(old)) return true;
+        }
+        return false;
     }
 
     [[nodiscard]] bool reaches(int from, int to) const {

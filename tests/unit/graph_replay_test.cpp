@@ -1,0 +1,407 @@
+// The property that a plan must have: on shared objects, with passes that are skipped when nothing changed,
+// every reader sees what its producer makes, and no access lacks a barrier. Random graphs are replayed on a
+// toy device whose objects hold one number each, and compared with an interpreter that knows the graph only.
+#include "graph/barriers.h"
+#include "graph_mock.h"
+#include <gtest/gtest.h>
+#include <random>
+
+namespace kestrel {
+namespace {
+
+using namespace test;
+
+using Token = std::uint64_t;
+Token mix(Token a, Token b) {
+    a ^= b + 0x9E3779B97F4A7C15ULL + (a << 6) + (a >> 2);
+    a *= 0xBF58476D1CE4E5B9ULL;
+    return a ^ (a >> 31);
+}
+Token hashOf(const std::string& text) { return std::hash<std::string>()(text); }
+
+// How one random pass behaves. Ports: in0..in2 (optional textures), base (optional, updated), m (optional
+// tracer), out0, out1, updated, scratch, tracer.
+struct Behaviour {
+    Causes depends = Causes::None;
+    std::map<std::string, PortRef> feeds;
+    std::uint32_t side = 8;
+    bool twoSteps = false, clears = false, history = false, sameOut1 = false, constantOut1 = false;
+    bool providesModule = false;
+    Access writeAccess = Access::Image;
+    Access readAccess = Access::Fetch;
+    [[nodiscard]] bool fed(const std::string& port) const { return feeds.contains(port); }
+};
+
+const std::vector<std::string> textureInputs = {"in0", "in1", "in2"};
+const glm::vec4 clearValue(7), constantValue(3);
+
+Declaration declareRandom(const Behaviour& how, const Inputs& in, const Demand& demand) {
+    Declaration d;
+    d.depends = how.depends;
+    d.always = how.history;
+    const Desc desc = image(how.side);
+    const bool needsScratch = how.twoSteps || (how.providesModule && demand.reads("tracer"));
+    Step last = step("last", {});
+    for (const std::string& port : textureInputs)
+        if (in.connected(port)) last.uses.push_back(reads(port, how.readAccess));
+    if (in.connected("m")) last.modules.push_back({"m", takes::AnyHit});
+    if (needsScratch) {
+        Output scratch = output("scratch", desc);
+        if (how.clears) scratch.clear = clearValue;
+        d.outputs.push_back(scratch);
+        Step first = step("first", {writes("scratch", how.writeAccess)});
+        if (in.connected("in0")) first.uses.push_back(reads("in0"));
+        d.steps.push_back(first);
+        last.uses.push_back(reads("scratch"));
+    }
+    const auto writeOut = [&](const std::string& port) {
+        d.outputs.push_back(output(port, desc));
+        last.uses.push_back(writes(port, how.writeAccess));
+    };
+    if (demand.reads("out0")) {
+        writeOut("out0");
+        if (how.history) {
+            Use previous = reads("out0");
+            previous.previous = true;
+            last.uses.push_back(previous);
+        }
+    }
+    if (demand.reads("out1")) {
+        if (how.sameOut1 && in.connected("in0")) {
+            d.outputs.push_back(output("out1"));
+            d.outputs.back().same = "in0";
+        } else if (how.constantOut1) {
+            d.outputs.push_back(output("out1", desc));
+            d.outputs.back().constant = constantValue;
+        } else {
+            writeOut("out1");
+        }
+    }
+    if (demand.reads("updated") && in.connected("base")) {
+        d.outputs.push_back(output("updated"));
+        d.outputs.back().updates = "base";
+        last.uses.push_back(writes("updated", how.writeAccess));
+    }
+    if (how.providesModule && demand.reads("tracer")) {
+        d.outputs.push_back(output("tracer", Desc::module(0)));
+        Module module;
+        module.port = "tracer";
+        module.shader = "t.glsl";
+        module.uses = {reads("scratch", how.readAccess)};
+        if (in.connected("in1")) module.uses.push_back(reads("in1"));
+        if (in.connected("m")) module.modules = {{"m", takes::AnyHit}};
+        d.modules = {module};
+    }
+    const bool work =
+        std::any_of(last.uses.begin(), last.uses.end(), [](const Use& use) { return use.write; });
+    if (work) d.steps.push_back(last);
+    return d;
+}
+
+struct RandomGraph {
+    std::map<std::string, Behaviour> passes;
+    std::vector<std::string> names;
+    std::vector<PortRef> outputs;
+    Registry registry;
+    Graph graph;
+};
+
+RandomGraph makeGraph(std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
+    RandomGraph made;
+    const std::uint32_t count = 3 + below(12);
+    for (std::uint32_t i = 0; i < count; ++i) made.names.push_back("p" + std::to_string(i));
+    std::vector<PortRef> images, tracers;
+    for (const std::string& name : made.names) {
+        Behaviour how;
+        constexpr std::array causes = {Causes::Frame, Causes::Frame, Causes::None, Causes::Lights};
+        how.depends = causes[below(4)];
+        how.side = below(4) == 0 ? 16 : 8;
+        how.twoSteps = below(3) == 0;
+        how.clears = below(2) == 0;
+        how.history = below(6) == 0;
+        how.sameOut1 = below(4) == 0;
+        how.constantOut1 = below(4) == 0;
+        how.providesModule = below(4) == 0;
+        constexpr std::array writeKinds = {Access::Image, Access::Attachment, Access::Copy};
+        how.writeAccess = writeKinds[below(3)];
+        how.readAccess = below(2) == 0 ? Access::Fetch : Access::Image;
+        for (const std::string& port : textureInputs)
+            if (!images.empty() && below(2) == 0)
+                how.feeds[port] = images[below(static_cast<std::uint32_t>(images.size()))];
+        if (!images.empty() && below(3) == 0)
+            how.feeds["base"] = images[below(static_cast<std::uint32_t>(images.size()))];
+        if (!tracers.empty() && below(2) == 0)
+            how.feeds["m"] = tracers[below(static_cast<std::uint32_t>(tracers.size()))];
+        images.push_back({name, "out0"});
+        images.push_back({name, "out1"});
+        if (how.fed("base")) images.push_back({name, "updated"});
+        if (how.providesModule) tracers.push_back({name, "tracer"});
+        made.passes[name] = how;
+    }
+    std::set<PortRef> wanted;
+    for (std::uint32_t i = 0; i < 1 + below(3); ++i)
+        wanted.insert(images[images.size() - 1 -
+                             below(static_cast<std::uint32_t>(std::min<size_t>(images.size(), 6)))]);
+    made.outputs.assign(wanted.begin(), wanted.end());
+
+    // The document lists the passes in random order.
+    std::vector<std::string> listed = made.names;
+    std::shuffle(listed.begin(), listed.end(), random);
+    for (const std::string& name : listed) {
+        const Behaviour& how = made.passes.at(name);
+        made.registry.add(mockType("T" + name,
+                                   {opt("in0"), opt("in1"), opt("in2"), opt("base"),
+                                    opt("m", PortKind::Tracer), out("out0"), out("out1"), out("updated"),
+                                    internal("scratch"), out("tracer", PortKind::Tracer)},
+                                   [how](const World&, const Inputs& in, const Demand& demand) {
+                                       return declareRandom(how, in, demand);
+                                   }));
+        GraphPass pass;
+        pass.name = name;
+        pass.type = "T" + name;
+        made.graph.passes.push_back(pass);
+        for (const auto& [port, from] : how.feeds) made.graph.edges.push_back({from, {name, port}, {}});
+    }
+    for (const PortRef& port : made.outputs) made.graph.outputs.push_back({port, {}});
+    return made;
+}
+
+// What every port holds in a frame, by the graph alone: everything is computed anew in every frame.
+class Interpreter {
+public:
+    explicit Interpreter(const RandomGraph& graph)
+        : graph_(graph) {}
+
+    void frame(Token frame, Token lights) {
+        previous_ = std::move(values_);
+        values_.clear();
+        for (const std::string& name : graph_.names) evaluate(name, frame, lights);
+    }
+    [[nodiscard]] Token at(const std::string& pass, const std::string& port) const {
+        const Behaviour& how = graph_.passes.at(pass);
+        const auto feed = how.feeds.find(port);
+        return feed == how.feeds.end() ? values_.at({pass, port}) : values_.at(feed->second);
+    }
+    [[nodiscard]] Token previousAt(const std::string& pass, const std::string& port) const {
+        const auto found = previous_.find({pass, port});
+        return found == previous_.end() ? 0 : found->second;
+    }
+    // What a binding of the module behind `input` of `pass` reads: "m_scratch" leads to the provider's
+    // scratch.
+    [[nodiscard]] Token through(const std::string& pass, const std::string& name) const {
+        if (!name.starts_with("m_")) return at(pass, name);
+        return through(graph_.passes.at(pass).feeds.at("m").pass, name.substr(2));
+    }
+
+private:
+    // The module's value: all that a consumer reads through it.
+    [[nodiscard]] Token moduleToken(const std::string& provider) const {
+        const Behaviour& how = graph_.passes.at(provider);
+        Token token = values_.at({provider, "scratch"});
+        if (how.fed("in1")) token += at(provider, "in1");
+        if (how.fed("m")) token += moduleToken(how.feeds.at("m").pass);
+        return token;
+    }
+    void evaluate(const std::string& name, Token frame, Token lights) {
+        const Behaviour& how = graph_.passes.at(name);
+        const Token own = how.depends == Causes::Frame ? frame : how.depends == Causes::Lights ? lights : 0;
+        // The order of reads does not matter: sums.
+        Token first = own;
+        if (how.fed("in0")) first += at(name, "in0");
+        values_[{name, "scratch"}] = mix(first, hashOf(name + "first" + "scratch"));
+        Token all = own;
+        for (const std::string& port : textureInputs)
+            if (how.fed(port)) all += at(name, port);
+        if (how.fed("m")) all += moduleToken(how.feeds.at("m").pass);
+        scratchOfLast_ = values_[{name, "scratch"}];
+        reads_[name] = all;
+        const bool scratch = how.twoSteps || (how.providesModule && tracerDemanded_.contains(name));
+        if (scratch) all += scratchOfLast_;
+        if (how.history && demanded_.contains({name, "out0"})) all += previousAt(name, "out0");
+        values_[{name, "out0"}] = mix(all, hashOf(name + "last" + "out0"));
+        values_[{name, "out1"}] = how.sameOut1 && how.fed("in0") ? at(name, "in0")
+                                  : how.constantOut1             ? Token{3}
+                                                                 : mix(all, hashOf(name + "last" + "out1"));
+        if (how.fed("base"))
+            values_[{name, "updated"}] = mix(all + at(name, "base"), hashOf(name + "last" + "updated"));
+    }
+
+public:
+    // Which ports somebody asks for decides what a declaration reads (see declareRandom).
+    std::set<std::string> tracerDemanded_;
+    std::set<PortRef> demanded_;
+
+private:
+    const RandomGraph& graph_;
+    std::map<PortRef, Token> values_, previous_;
+    std::map<std::string, Token> reads_;
+    Token scratchOfLast_ = 0;
+};
+
+// Executes a plan as the executor does: barrier, copies, clears, step; and checks every access.
+class Device {
+public:
+    Device(const Plan& plan, const RandomGraph& graph, Interpreter& expected)
+        : plan_(plan)
+        , graph_(graph)
+        , expected_(expected)
+        , content_(plan.objects.size(), 0)
+        , lastWrite_(plan.objects.size(), 0)
+        , lastAccess_(plan.objects.size(), 0)
+        , swapped_(plan.resources.size(), false) {
+        for (const PlanResource& resource : plan.resources)
+            if (resource.constant) content_[static_cast<size_t>(resource.object)] = 3;
+    }
+
+    void frame(Causes causes, Token frame, Token lights) {
+        std::vector<Causes> raised(plan_.passes.size(), Causes::None);
+        for (size_t i = 0; i < plan_.passes.size(); ++i) {
+            const PlanPass& pass = plan_.passes[i];
+            raised[i] = pass.depends & causes;
+            for (const int input : pass.inputs) raised[i] |= raised[static_cast<size_t>(input)];
+            if (!any(raised[i]) && !pass.always && frame > 1) {
+                EXPECT_FALSE(pass.everyFrame);
+                continue;
+            }
+            if (!any(raised[i])) raised[i] = Causes::Frame; // as the executor does for what always runs
+            run(pass, frame, lights);
+        }
+        for (const PlanOutput& output : plan_.outputs)
+            EXPECT_EQ(content_[object(output.resource, false)],
+                      expected_.at(output.port.pass, output.port.port))
+                << output.port.text();
+    }
+
+    int mistakes = 0;
+
+private:
+    [[nodiscard]] size_t object(int index, bool previous) const {
+        const PlanResource& resource = plan_.resources[static_cast<size_t>(index)];
+        const bool second = resource.history && (previous != swapped_[static_cast<size_t>(index)]);
+        return static_cast<size_t>(resource.object) + (second ? 1 : 0);
+    }
+
+    void run(const PlanPass& pass, Token frame, Token lights) {
+        for (size_t i = 0; i < plan_.resources.size(); ++i)
+            if (plan_.resources[i].history && plan_.resources[i].port.pass == pass.name)
+                swapped_[i] = !swapped_[i];
+        for (int i = 0; i < pass.stepCount; ++i) runStep(pass, pass.firstStep + i, frame, lights);
+    }
+
+    void runStep(const PlanPass& pass, int index, Token frame, Token lights) {
+        const PlanStep& step = plan_.steps[static_cast<size_t>(index)];
+        for (std::uint32_t bit = 0; bit < 8; ++bit)
+            if ((static_cast<std::uint32_t>(step.barrier) & (1U << bit)) != 0) barrierAt_[bit] = ++clock_;
+        for (const auto& [from, to] : step.copies) {
+            access(object(from, false), Access::Copy, false);
+            access(object(to, false), Access::Copy, true);
+            content_[object(to, false)] = content_[object(from, false)];
+        }
+        if (index == pass.firstStep)
+            for (size_t i = 0; i < plan_.resources.size(); ++i)
+                if (plan_.resources[i].clear && plan_.resources[i].port.pass == pass.name) {
+                    access(object(static_cast<int>(i), false), Access::Copy, true);
+                    content_[object(static_cast<int>(i), false)] = 7;
+                }
+        const Behaviour& how = graph_.passes.at(pass.name);
+        Token sum = how.depends == Causes::Frame ? frame : how.depends == Causes::Lights ? lights : 0;
+        for (const PlanBinding& binding : step.bindings) {
+            const size_t at = object(binding.resource, binding.previous);
+            access(at, binding.access, binding.write);
+            if (binding.write) continue;
+            const Token wanted = binding.previous ? expected_.previousAt(pass.name, binding.port)
+                                                  : expected_.through(pass.name, binding.name);
+            if (content_[at] != wanted) {
+                ++mistakes;
+                ADD_FAILURE() << "frame " << frame << ": " << pass.name << " reads the wrong content by '"
+                              << binding.name << "'";
+            }
+            sum += content_[at];
+        }
+        for (const PlanBinding& binding : step.bindings) {
+            if (!binding.write) continue;
+            Token& content = content_[object(binding.resource, false)];
+            // An update depends on what is there; everything else is written wholly.
+            content = mix(sum + (binding.port == "updated" ? content : 0),
+                          hashOf(pass.name + step.step.name + binding.port));
+        }
+    }
+
+    [[nodiscard]] std::uint64_t lastBarrier(Access access) const {
+        for (std::uint32_t bit = 0; bit < 8; ++bit)
+            if (static_cast<std::uint32_t>(barrierFor(access)) == 1U << bit) return barrierAt_[bit];
+        return 0;
+    }
+
+    void access(size_t at, Access access, bool write) {
+        const bool incoherent = write && isIncoherent(access);
+        if (lastWrite_[at] > 0 && lastBarrier(access) < lastWrite_[at]) {
+            ++mistakes;
+            ADD_FAILURE() << "no " << accessName(access) << " barrier since a shader wrote "
+                          << plan_.objects[at].label;
+        }
+        if (incoherent && lastAccess_[at] > 0 && lastBarrier(access) < lastAccess_[at]) {
+            ++mistakes;
+            ADD_FAILURE() << "a store overtakes an access of " << plan_.objects[at].label;
+        }
+        pendingWrites_.emplace_back(at, incoherent);
+        if (incoherent) lastWrite_[at] = ++clock_;
+        if (access != Access::Copy && access != Access::Host) lastAccess_[at] = ++clock_;
+    }
+
+    const Plan& plan_;
+    const RandomGraph& graph_;
+    Interpreter& expected_;
+    std::vector<Token> content_;
+    std::vector<std::uint64_t> lastWrite_, lastAccess_; // by object, on the clock
+    std::array<std::uint64_t, 8> barrierAt_{};
+    std::uint64_t clock_ = 0;
+    std::vector<bool> swapped_; // history: the second object is the present one
+    std::vector<std::pair<size_t, bool>> pendingWrites_;
+};
+
+void replay(std::uint32_t seed, bool share, bool keepAll) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed << (share ? " shared" : " unshared")
+                                    << (keepAll ? " keep-all" : ""));
+    const RandomGraph graph = makeGraph(seed);
+    World world;
+    world.facts.lightsMove = true;
+    CompileOptions options;
+    options.shareMemory = share;
+    options.keepAll = keepAll;
+    const Plan plan =
+        compile(graph.graph, graph.registry, makePasses(graph.graph, graph.registry), world, options);
+
+    Interpreter expected(graph);
+    for (const PlanPass& pass : plan.passes) {
+        if (pass.descs.contains("tracer")) expected.tracerDemanded_.insert(pass.name);
+        if (pass.descs.contains("out0")) expected.demanded_.insert({pass.name, "out0"});
+    }
+    Device device(plan, graph, expected);
+    std::mt19937 random(seed + 1);
+    Token lights = 100;
+    for (Token frame = 1; frame <= 6 && device.mistakes == 0 && !testing::Test::HasFailure(); ++frame) {
+        Causes causes = Causes::Frame;
+        if (random() % 3 == 0) {
+            ++lights;
+            causes |= Causes::Lights;
+        }
+        expected.frame(frame, lights);
+        device.frame(causes, frame, lights);
+    }
+}
+
+TEST(Replay, EveryReaderSeesWhatItsProducerMakes) {
+    for (std::uint32_t seed = 0; seed < 1500 && !HasFailure(); ++seed) replay(seed, true, false);
+}
+TEST(Replay, WithoutSharing) {
+    for (std::uint32_t seed = 0; seed < 300 && !HasFailure(); ++seed) replay(seed, false, false);
+}
+TEST(Replay, WithNothingLeftOut) {
+    for (std::uint32_t seed = 0; seed < 300 && !HasFailure(); ++seed) replay(seed, true, true);
+}
+
+} // namespace
+} // namespace kestrel
