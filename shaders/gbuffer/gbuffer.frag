@@ -1,6 +1,5 @@
 // Each OUT_… define switches one output on; what nobody reads is not computed.
 #include "lib/fragment.glsl"
-#include "lib/scene.glsl"
 #include "lib/view.glsl"
 
 layout(std140) uniform DepthView { ViewData depthView; };
