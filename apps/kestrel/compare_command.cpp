@@ -1,0 +1,30 @@
+// `kestrel compare` on the command line; what it does is in compare.cpp.
+#include "commands.h"
+#include "compare.h"
+#include <memory>
+
+namespace kestrel {
+
+void addCompareCommand(CLI::App& app, Run& run) {
+    CLI::App* command = app.add_subcommand("compare", "Measure an image against a reference");
+    const auto options = std::make_shared<CompareOptions>();
+    command->add_option("REFERENCE", options->reference, "Image file (.png, .hdr, .exr)")->required();
+    command->add_option("TEST", options->test, "Image file of the same size and kind")->required();
+    command->add_option("--heatmap", options->heatMap,
+                        "Write the FLIP error: .png in colours, .hdr or .exr as values");
+    command->add_option("--mask", options->mask, "Image file: only pixels with a luma above 0.5 count");
+    command
+        ->add_option(
+            "--max", options->limits,
+            "METRIC=VALUE: exit 1 if the error is larger (psnr and ssim: if smaller); metrics: mse, rmse, "
+            "psnr, ssim, flip, flip.weighted_median, flip.q1, flip.q3, flip.min, flip.max; may be given "
+            "several times")
+        ->allow_extra_args(false);
+    command->add_flag("--json", options->json, "Print one line of JSON");
+    command->footer("Examples:\n"
+                    "  kestrel compare reference.png test.png --heatmap flip.png\n"
+                    "  kestrel compare reference.exr test.exr --max flip=0.05 --json");
+    command->callback([options, &run] { run = [options] { return compareCommand(*options); }; });
+}
+
+} // namespace kestrel

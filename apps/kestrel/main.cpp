@@ -1,0 +1,104 @@
+// The command line of Kestrel: one file a command; here are only what holds for all of them, and the exit
+// status.
+#include "commands.h"
+#include "core/check.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/version.h"
+#include <cstdio>
+#include <fmt/format.h>
+#include <new>
+
+namespace {
+
+using namespace kestrel;
+
+std::string versionText() {
+    return fmt::format("kestrel {} ({})\nparts: {}\nbackends: egl{}{}\n", version(), configuration(), parts(),
+                       parts().find("osmesa") != std::string::npos ? " osmesa" : "",
+                       parts().find("window") != std::string::npos ? " window" : "");
+}
+
+// The command as it can be pasted into a shell.
+std::string quotedCommand(int argc, char** argv) {
+    std::string command;
+    for (int i = 0; i < argc; ++i) {
+        const std::string argument = argv[i];
+        const bool plain =
+            !argument.empty() && argument.find_first_not_of("abcdefghijklmnopqrstuvwxyz"
+                                                            "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                            "0123456789_-+=./:,@%") == std::string::npos;
+        std::string quoted;
+        for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        command += (i > 0 ? " " : "") + (plain ? argument : "'" + quoted + "'");
+    }
+    return command;
+}
+
+int tell(ExitStatus status, const std::string& line) {
+    fmt::print(stderr, "kestrel: {}\n", line);
+    return static_cast<int>(status);
+}
+
+std::string oneLine(std::string text) {
+    for (char& c : text)
+        if (c == '\n' || c == '\r') c = ' ';
+    while (text.ends_with(' ')) text.pop_back();
+    return text;
+}
+
+int runGuarded(const Run& run) {
+    try {
+        const int status = run();
+        if (std::fflush(stdout) != 0) return tell(ExitStatus::BadInput, "standard output cannot be written");
+        return status;
+    } catch (const Error& error) {
+        for (const Problem& problem : error.problems()) tell(error.status(), oneLine(problem.text()));
+        return static_cast<int>(error.status());
+    } catch (const std::bad_alloc&) {
+        return tell(ExitStatus::MachineLacks, "there is not enough memory");
+    } catch (const std::exception& error) {
+        return tell(ExitStatus::BadInput, oneLine(error.what()));
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    setReplayCommand(quotedCommand(argc, argv));
+    CLI::App app("Renders graphs of rendering techniques, and measures which gives which error at which run "
+                 "time.",
+                 "kestrel");
+    app.footer("'kestrel COMMAND --help' tells a command's options.\n"
+               "Exit status: 0 done; 1 a measured check failed; 2 bad input or usage; 3 the machine lacks "
+               "something.");
+    bool quiet = false, verbose = false;
+    app.add_flag_callback(
+        "--version,-V",
+        [] {
+            fmt::print("{}", versionText());
+            throw CLI::Success();
+        },
+        "Print the version and the parts and backends that are in");
+    app.add_flag("--quiet,-q", quiet, "Print no warnings");
+    app.add_flag("--verbose,-v", verbose, "Print what is done");
+    app.require_subcommand(1);
+    app.fallthrough();
+
+    Run run;
+    addRenderCommand(app, run);
+    addCheckCommand(app, run);
+    addPassesCommand(app, run);
+    addDotCommand(app, run);
+    addCompareCommand(app, run);
+    addSceneCommand(app, run);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& done) {
+        return app.exit(done);
+    } catch (const CLI::ParseError& error) {
+        return tell(ExitStatus::BadInput, oneLine(error.what()) + " ('kestrel --help' tells the usage)");
+    }
+    setLogLevel(quiet ? LogLevel::Error : verbose ? LogLevel::Debug : LogLevel::Warning);
+    return runGuarded(run);
+}

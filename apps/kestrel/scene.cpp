@@ -1,0 +1,120 @@
+// `kestrel scene`: the built-in scenes, the facts of any scene, and export as .glb.
+#include "commands.h"
+#include "common.h"
+#include "scene/builtin.h"
+#include "scene/facts.h"
+#include "scene/gltf_export.h"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace kestrel {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void printJson(const Json& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+int listScenes(bool json) {
+    Json all = Json::array();
+    for (const BuiltinInfo& info : builtinInfos()) {
+        all.push_back({{"name", "builtin:" + info.name}, {"sentence", info.sentence}});
+        if (!json) fmt::print("builtin:{:<10} {}\n", info.name, info.sentence);
+    }
+    if (json) printJson({{"scenes", all}});
+    return 0;
+}
+
+// Numbers and yes-or-no facts by name, in one order for people and machines.
+Json factsJson(const SceneFacts& f) {
+    return {{"triangles", f.triangles},
+            {"vertices", f.vertices},
+            {"materials", f.materials},
+            {"images", f.images},
+            {"instances", f.instances},
+            {"masked_triangles", f.maskedTriangles},
+            {"masked", f.hasMasked},
+            {"blend", f.hasBlend},
+            {"double_sided", f.hasDoubleSided},
+            {"single_sided", f.hasSingleSided},
+            {"textures", f.hasTextures},
+            {"normal_maps", f.hasNormalMaps},
+            {"vertex_colours", f.hasVertexColours},
+            {"emission", f.hasEmission},
+            {"transmission", f.hasTransmission},
+            {"unlit", f.hasUnlit},
+            {"geometry_moves", f.geometryMoves},
+            {"geometry_deforms", f.geometryDeforms},
+            {"camera_moves", f.cameraMoves},
+            {"lights_move", f.lightsMove},
+            {"point_lights", f.pointLights},
+            {"spot_lights", f.spotLights},
+            {"directional_lights", f.directionalLights},
+            {"rectangle_lights", f.rectangleLights},
+            {"sphere_lights", f.sphereLights},
+            {"duration", f.duration},
+            {"radius", f.sphere.radius}};
+}
+
+int tellScene(const std::string& source, bool json) {
+    const Scene scene = openScene(source);
+    const SceneFacts facts = gatherFacts(scene);
+    std::vector<std::string> cameras;
+    for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
+    const Json values = factsJson(facts);
+    if (json) {
+        printJson(
+            {{"name", scene.name}, {"cameras", cameras}, {"facts", values}, {"warnings", scene.warnings}});
+        return 0;
+    }
+    fmt::print("{}\ncameras: {}\n", scene.name, fmt::join(cameras, ", "));
+    for (const auto& [name, value] : values.items())
+        fmt::print("{}: {}\n", name, value.is_boolean() ? (value.get<bool>() ? "yes" : "no") : value.dump());
+    return 0;
+}
+
+int exportTo(const std::string& source, const std::string& file) {
+    exportScene(openScene(source), file);
+    fmt::print("{}\n", file);
+    return 0;
+}
+
+} // namespace
+
+void addSceneCommand(CLI::App& app, Run& run) {
+    struct Arguments {
+        std::string source, file;
+        bool json = false;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App* scene =
+        app.add_subcommand("scene", "List the built-in scenes, tell a scene's facts, export it");
+    scene->require_subcommand(1);
+    const char* sourceHelp = "A .gltf or .glb file, builtin:NAME, or builtin:NAME?detail=0.1";
+
+    CLI::App* list = scene->add_subcommand("list", "List the built-in scenes");
+    list->add_flag("--json", arguments->json, "Print JSON");
+    list->callback([arguments, &run] { run = [arguments] { return listScenes(arguments->json); }; });
+
+    CLI::App* info = scene->add_subcommand("info", "Tell what holds for a scene over its whole timeline");
+    info->add_option("SCENE", arguments->source, sourceHelp)->required();
+    info->add_flag("--json", arguments->json, "Print JSON");
+    info->callback(
+        [arguments, &run] { run = [arguments] { return tellScene(arguments->source, arguments->json); }; });
+
+    CLI::App* exported = scene->add_subcommand("export", "Write a scene as .glb");
+    exported->add_option("SCENE", arguments->source, sourceHelp)->required();
+    exported->add_option("FILE", arguments->file, "The .glb file to write")->required();
+    exported->callback(
+        [arguments, &run] { run = [arguments] { return exportTo(arguments->source, arguments->file); }; });
+    scene->footer("Examples:\n"
+                  "  kestrel scene list\n"
+                  "  kestrel scene info model.glb --json\n"
+                  "  kestrel scene export builtin:tower tower.glb");
+}
+
+} // namespace kestrel
