@@ -1,9 +1,12 @@
-# kestrel_plugin(NAME source...): one plugin. The same function builds the passes of the tree and, after
-# find_package(Kestrel), plugins of other projects. The library is called NAME.so; it lies in
-# ${KESTREL_PLUGIN_FOLDER} (default: kestrel/ in the build folder), where $KESTREL_PLUGINS can point.
+# kestrel_plugin(NAME source... [SHADERS folder] [OUTPUT folder]): one plugin. The same function builds the passes of
+# the tree and, after find_package(Kestrel), plugins of other projects. The library is called NAME.so and lies in
+# OUTPUT (default: ${KESTREL_PLUGIN_FOLDER}, else kestrel/ in the build folder), where $KESTREL_PLUGINS can point. What
+# lies in the folder SHADERS ("my_plugin/my.comp") is found by the plugin's passes under the same path; in the build
+# tree through links, so that an edited shader acts at once.
 function(kestrel_plugin name)
+    cmake_parse_arguments(arg "" "SHADERS;OUTPUT" "" ${ARGN})
     set(target plugin_${name})
-    add_library(${target} MODULE ${ARGN})
+    add_library(${target} MODULE ${arg_UNPARSED_ARGUMENTS})
     if(TARGET kestrel_options)
         target_link_libraries(${target} PRIVATE kestrel_options)
     elseif(KESTREL_CONFIG STREQUAL "sanitize")
@@ -12,14 +15,28 @@ function(kestrel_plugin name)
     endif()
     target_link_libraries(${target} PRIVATE Kestrel::kestrel)
     target_compile_features(${target} PRIVATE cxx_std_20)
+
+    set(folder ${CMAKE_CURRENT_BINARY_DIR}/kestrel)
     if(KESTREL_PLUGIN_FOLDER)
         set(folder ${KESTREL_PLUGIN_FOLDER})
-    else()
-        set(folder ${CMAKE_CURRENT_BINARY_DIR}/kestrel)
+    endif()
+    if(arg_OUTPUT)
+        set(folder ${arg_OUTPUT})
     endif()
     set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${folder}
                           CXX_EXTENSIONS OFF INSTALL_RPATH "$ORIGIN/..")
-    if(NOT KESTREL_PLUGIN_IS_A_TEST)
-        install(TARGETS ${target} LIBRARY DESTINATION lib/kestrel)
+    if(arg_SHADERS)
+        file(GLOB parts RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/${arg_SHADERS} ${CMAKE_CURRENT_SOURCE_DIR}/${arg_SHADERS}/*)
+        file(MAKE_DIRECTORY ${folder}/shaders)
+        foreach(part ${parts})
+            file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${arg_SHADERS}/${part} ${folder}/shaders/${part} SYMBOLIC)
+        endforeach()
+    endif()
+    if(KESTREL_PLUGIN_IS_A_TEST)
+        return()
+    endif()
+    install(TARGETS ${target} LIBRARY DESTINATION lib/kestrel)
+    if(arg_SHADERS)
+        install(DIRECTORY ${arg_SHADERS}/ DESTINATION lib/kestrel/shaders)
     endif()
 endfunction()
