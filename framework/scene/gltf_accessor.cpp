@@ -1,5 +1,4 @@
 #include "scene/gltf_accessor.h"
-#include "scene/gltf_import.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -139,11 +138,11 @@ void AccessorReader::checkType(int accessor, int wanted, const std::string& what
 
 void AccessorReader::spend(int accessor, const std::string& what) {
     const std::uint64_t values = static_cast<std::uint64_t>(components(accessor));
-    const std::uint64_t left = maxGltfDecodedBytes - decodedBytes_;
+    const std::uint64_t left = file_.limits.decodedBytes - decodedBytes_;
     if (count(accessor) > left / (4 * values))
         fail(accessor, what,
              fmt::format("has {} elements; at most {} bytes are decoded for one file", count(accessor),
-                         maxGltfDecodedBytes));
+                         file_.limits.decodedBytes));
     decodedBytes_ += 4 * values * count(accessor);
 }
 

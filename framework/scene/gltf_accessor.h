@@ -15,7 +15,7 @@ namespace kestrel {
 
 // Reads each accessor once and keeps it, so that what many primitives share is neither read nor counted
 // twice. All functions take an index into the model's accessors and `what`, the user that messages name, and
-// throw InputError for a wrong type, for data outside its buffer view, and beyond maxGltfDecodedBytes in
+// throw InputError for a wrong type, for data outside its buffer view, and beyond GltfLimits::decodedBytes in
 // total.
 class AccessorReader {
 public:

@@ -63,9 +63,11 @@ std::optional<AnimationChannel> readChannel(GltfContext& context, const tinygltf
     channel.node = source.target_node;
     channel.path = *pathOf(source.target_path);
     channel.interpolation = interpolationOf(sampler.interpolation);
+    context.spend(context.accessors.count(sampler.input), sizeof(float), what);
     channel.times = readTimes(context, sampler.input, what + " input");
     size_t components = channel.path == AnimatedPath::Rotation ? 4 : 3;
     if (channel.path == AnimatedPath::Weights) components = 1;
+    context.spend(context.accessors.count(sampler.output), components * sizeof(float), what);
     channel.values = context.accessors.floats(sampler.output, static_cast<int>(components), what + " output");
     if (channel.path == AnimatedPath::Weights)
         components = targetsOf(context.scene, context.scene.nodes[static_cast<size_t>(channel.node)]);

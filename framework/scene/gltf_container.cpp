@@ -1,7 +1,6 @@
 #include "scene/gltf_container.h"
 #include "core/error.h"
 #include "core/files.h"
-#include "scene/gltf_import.h"
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -38,7 +37,7 @@ Location locationOf(const fs::path& path, std::string_view text, size_t byte) {
             static_cast<int>(std::max<size_t>(1, before.size() - lineStart))};
 }
 
-nlohmann::json parseJson(const fs::path& path, std::string_view text) {
+nlohmann::json parseJson(const fs::path& path, std::string_view text, std::uint64_t maxValues) {
     std::uint64_t values = 0;
     using Event = nlohmann::json::parse_event_t;
     const auto bound = [&](int depth, Event event, nlohmann::json&) {
@@ -47,9 +46,9 @@ nlohmann::json parseJson(const fs::path& path, std::string_view text) {
                              fmt::format("the JSON is nested more than {} levels deep", maxDepth));
         const bool counts =
             event == Event::value || event == Event::object_start || event == Event::array_start;
-        if (counts && ++values > maxGltfJsonValues)
+        if (counts && ++values > maxValues)
             throw InputError(Location{path.string()},
-                             fmt::format("the JSON has more than {} values", maxGltfJsonValues));
+                             fmt::format("the JSON has more than {} values", maxValues));
         return true;
     };
     try {
@@ -83,7 +82,7 @@ void readChunks(GltfFile& file, std::span<const std::byte> bytes) {
                      fmt::format("GLB chunk {} states {} bytes; {} are left", chunk, size, length - offset));
         const std::span<const std::byte> content = bytes.subspan(offset, size);
         if (chunk == 0 && type != chunkJson) failGltf(file, "the first GLB chunk is not JSON");
-        if (chunk == 0) file.document = parseJson(file.path, textOf(content));
+        if (chunk == 0) file.document = parseJson(file.path, textOf(content), file.limits.jsonValues);
         if (chunk == 1 && type == chunkBinary) file.binary.assign(content.begin(), content.end());
         offset += size;
     }
@@ -153,15 +152,16 @@ void failGltf(const GltfFile& file, const std::string& message) {
     throw InputError(Location{file.path.string()}, message);
 }
 
-GltfFile readGltfFile(const fs::path& path) {
+GltfFile readGltfFile(const fs::path& path, const GltfLimits& limits) {
     GltfFile file;
     file.path = path;
+    file.limits = limits;
     const std::vector<std::byte> bytes = readBytes(path);
     if (bytes.empty()) failGltf(file, "the file is empty");
     if (bytes.size() >= 4 && wordAt(bytes, 0) == magicGlb)
         readChunks(file, bytes);
     else
-        file.document = parseJson(path, textOf(bytes));
+        file.document = parseJson(path, textOf(bytes), limits.jsonValues);
     if (!file.document.is_object()) failGltf(file, "the JSON is not an object");
     return file;
 }

@@ -15,9 +15,13 @@ struct GltfContext {
     AccessorReader& accessors;
     Scene& scene;
     std::vector<int> imageIndex; // the file's image to the scene's; -1 where Kestrel cannot read its format
+    std::uint64_t storedBytes = 0;
 
     [[noreturn]] void fail(const std::string& message) const { failGltf(file, message); }
-    // Adds to Scene::warnings unless it is there already.
+    // To be called before `count` elements of `size` bytes are copied into the scene. Throws InputError where
+    // the sum passes GltfLimits::storedBytes.
+    void spend(std::uint64_t count, std::uint64_t size, const std::string& what);
+    // Adds to Scene::warnings unless it is there already; says so once when there are too many to be read.
     void warn(const std::string& message);
 };
 

@@ -60,9 +60,9 @@ void refusePrimitivesWithoutData(const GltfFile& file) {
 // tinygltf fills its structures from the checked document. It gets neither buffers nor images, which are read
 // here, within bounds; nor what it would copy into every sampler of an animation.
 tinygltf::Model parseModel(const GltfFile& file) {
-    nlohmann::json reduced = file.document;
-    reduced.erase("buffers");
-    reduced.erase("images");
+    nlohmann::json reduced = nlohmann::json::object();
+    for (const auto& [name, value] : file.document.items())
+        if (name != "buffers" && name != "images") reduced[name] = value;
     if (const auto animations = reduced.find("animations"); animations != reduced.end())
         for (nlohmann::json& animation : *animations) {
             animation.erase("extensions");
@@ -84,8 +84,19 @@ tinygltf::Model parseModel(const GltfFile& file) {
 } // namespace
 
 void GltfContext::warn(const std::string& message) {
-    if (std::find(scene.warnings.begin(), scene.warnings.end(), message) == scene.warnings.end())
-        scene.warnings.push_back(message);
+    constexpr size_t most = 100;
+    if (scene.warnings.size() > most ||
+        std::find(scene.warnings.begin(), scene.warnings.end(), message) != scene.warnings.end())
+        return;
+    scene.warnings.push_back(scene.warnings.size() < most ? message : "there are further warnings");
+}
+
+void GltfContext::spend(std::uint64_t count, std::uint64_t size, const std::string& what) {
+    const std::uint64_t left = file.limits.storedBytes - storedBytes;
+    if (count > left / size)
+        fail(fmt::format("{}: the meshes and animations take more than {} bytes", what,
+                         file.limits.storedBytes));
+    storedBytes += count * size;
 }
 
 const tinygltf::Value* gltfExtension(const tinygltf::ExtensionMap& extensions, const char* name) {
@@ -108,8 +119,8 @@ void checkGltfExtensions(GltfContext& context) {
         if (!isSupported(name)) context.warn(fmt::format("the extension {} is ignored", name));
 }
 
-Scene importGltf(const std::filesystem::path& path) {
-    GltfFile file = readGltfFile(path);
+Scene importGltf(const std::filesystem::path& path, const GltfLimits& limits) {
+    GltfFile file = readGltfFile(path, limits);
     checkGltfSchema(file);
     refusePrimitivesWithoutData(file);
     const tinygltf::Model model = parseModel(file);
@@ -117,7 +128,7 @@ Scene importGltf(const std::filesystem::path& path) {
     scene.name = path.filename().string();
     scene.source = path.string();
     AccessorReader accessors(file, model);
-    GltfContext context{file, model, accessors, scene, {}};
+    GltfContext context{file, model, accessors, scene, {}, 0};
     checkGltfExtensions(context);
     readBuffers(file);
     readGltfImages(context);

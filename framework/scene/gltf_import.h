@@ -7,9 +7,13 @@
 namespace kestrel {
 
 // A stranger's file cannot make the program allocate without bound.
-inline constexpr std::uint64_t maxGltfPixels = std::uint64_t{1} << 28;       // of all images together
-inline constexpr std::uint64_t maxGltfDecodedBytes = std::uint64_t{2} << 30; // of all accessors as floats
-inline constexpr std::uint64_t maxGltfJsonValues = 4'000'000;                // and at most 64 levels deep
+struct GltfLimits {
+    std::uint64_t jsonValues = 4'000'000;                // and at most 64 levels deep
+    std::uint64_t pixels = std::uint64_t{1} << 28;       // of all images together
+    std::uint64_t decodedBytes = std::uint64_t{2} << 30; // of all accessors as floats, each once
+    std::uint64_t storedBytes = std::uint64_t{2} << 30; // of meshes and animations, which may share accessors
+    std::uint64_t joints = 4'000'000;                   // of all skinned nodes, which may share skins
+};
 
 // Reads the file's default scene. finishScene() has not been called on the result. What the file asks for and
 // Kestrel lacks is in Scene::warnings. Throws InputError (one line: the file, and which accessor, node, … is
@@ -17,6 +21,6 @@ inline constexpr std::uint64_t maxGltfJsonValues = 4'000'000;                // 
 // wrong types, indices out of range, data beyond its buffer, NaN and infinity, cycles and second parents in
 // the node hierarchy, files outside the folder, required extensions that Kestrel lacks, sizes above the
 // limits.
-Scene importGltf(const std::filesystem::path& file);
+Scene importGltf(const std::filesystem::path& file, const GltfLimits& limits = {});
 
 } // namespace kestrel

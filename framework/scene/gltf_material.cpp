@@ -1,6 +1,5 @@
 // Images, samplers, textures and materials of a glTF file.
 #include "scene/gltf_context.h"
-#include "scene/gltf_import.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -51,7 +50,7 @@ TextureImage decodeImage(const GltfContext& context, std::span<const std::byte> 
         static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
     if (image.width > maxImageSide || image.height > maxImageSide || pixels > pixelsLeft)
         context.fail(fmt::format("{} has {} x {} pixels; at most {} to a side and {} in all images are read",
-                                 what, image.width, image.height, maxImageSide, maxGltfPixels));
+                                 what, image.width, image.height, maxImageSide, context.file.limits.pixels));
     pixelsLeft -= pixels;
     const std::unique_ptr<stbi_uc, void (*)(void*)> decoded(
         stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4), stbi_image_free);
@@ -164,7 +163,7 @@ Material readMaterial(GltfContext& context, const tinygltf::Material& source) {
 void readGltfImages(GltfContext& context) {
     const auto images = context.file.document.find("images");
     if (images == context.file.document.end()) return;
-    std::uint64_t pixelsLeft = maxGltfPixels;
+    std::uint64_t pixelsLeft = context.file.limits.pixels;
     for (size_t i = 0; i < images->size(); ++i) {
         const nlohmann::json& source = (*images)[i];
         const std::string what = fmt::format("images[{}]", i);

@@ -56,7 +56,8 @@ private:
         if (source_.indices >= 0)
             indices = &context_.accessors.integers(source_.indices, 1, what_ + ".indices");
         const size_t count = indices ? indices->size() : vertices;
-        if (count > 3 * maxTriangles) context_.fail(fmt::format("{} has {} corners, too many", what_, count));
+        // A strip or fan has up to three corners for each index.
+        context_.spend(count, 3 * sizeof(std::uint32_t), what_);
         if (source_.mode == TINYGLTF_MODE_TRIANGLES && count % 3 != 0)
             context_.warn(
                 fmt::format("{} has {} indices: the last, incomplete triangle is ignored", what_, count));
@@ -96,6 +97,7 @@ private:
         const int accessor = attribute(attributes, name, what);
         if (accessor < 0) return values;
         const std::vector<float>& source = context_.accessors.floats(accessor, N, what + "." + name);
+        context_.spend(kept_.size(), N * sizeof(float), what);
         values.reserve(kept_.size());
         for (const std::uint32_t vertex : kept_) {
             glm::vec<N, float> value;
@@ -143,6 +145,7 @@ private:
         if (joints < 0) return;
         const std::vector<std::uint32_t>& source =
             context_.accessors.integers(joints, 4, what_ + ".JOINTS_0");
+        context_.spend(kept_.size(), sizeof(glm::uvec4), what_);
         for (const std::uint32_t vertex : kept_) {
             const std::uint32_t* joint = source.data() + 4 * static_cast<size_t>(vertex);
             primitive.joints.emplace_back(joint[0], joint[1], joint[2], joint[3]);

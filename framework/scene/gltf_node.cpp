@@ -267,8 +267,16 @@ void readGltfSkins(GltfContext& context) {
         }
         context.scene.skins.push_back(std::move(skin));
     }
-    for (size_t i = 0; i < context.scene.nodes.size(); ++i)
-        if (context.scene.nodes[i].skin >= 0 && context.scene.nodes[i].mesh >= 0) checkJoints(context, i);
+    std::uint64_t joints = 0;
+    for (size_t i = 0; i < context.scene.nodes.size(); ++i) {
+        const Node& node = context.scene.nodes[i];
+        if (node.skin < 0 || node.mesh < 0) continue;
+        checkJoints(context, i);
+        joints += context.scene.skins[static_cast<size_t>(node.skin)].joints.size();
+        if (joints > context.file.limits.joints)
+            context.fail(fmt::format("the skinned nodes have more than {} joints in total",
+                                     context.file.limits.joints));
+    }
 }
 
 } // namespace kestrel
