@@ -10,7 +10,6 @@ namespace {
 
 // Vertices times samples that may be evaluated; beyond that corners of boxes stand for the vertices.
 constexpr double maxEvaluations = 2e7;
-constexpr int stepsPerKey = 8;
 
 struct DoubleBox {
     glm::dvec3 min{std::numeric_limits<double>::infinity()};
@@ -33,14 +32,24 @@ struct Sample {
     int sinceJump; // 0 right at a key: a Step channel may have jumped
 };
 
-std::vector<Sample> samplesBetweenKeys(const std::vector<double>& keys) {
+// Steps between two keys: turns about several joints and cubic curves need fine ones; where keys are dense,
+// as in baked animations, what happens between two of them is nearly straight.
+int stepsPerKey(const Scene& scene, size_t keys) {
+    constexpr size_t dense = 16;
+    for (const Animation& animation : scene.animations)
+        for (const AnimationChannel& channel : animation.channels)
+            if (channel.interpolation == Interpolation::CubicSpline) return 8;
+    return keys > dense ? 4 : 8;
+}
+
+std::vector<Sample> samplesBetweenKeys(const std::vector<double>& keys, int steps) {
     std::vector<Sample> samples;
     for (size_t i = 0; i + 1 < keys.size(); ++i)
-        for (int step = 0; step <= stepsPerKey; ++step) {
-            const double time = keys[i] + (keys[i + 1] - keys[i]) * step / stepsPerKey;
+        for (int step = 0; step <= steps; ++step) {
+            const double time = keys[i] + (keys[i + 1] - keys[i]) * step / steps;
             // The end of a stretch is taken just before the next key, where a Step channel has not jumped
             // yet.
-            samples.push_back({step < stepsPerKey ? time : std::nextafter(keys[i + 1], keys[i]), step});
+            samples.push_back({step < steps ? time : std::nextafter(keys[i + 1], keys[i]), step});
         }
     if (!keys.empty()) samples.push_back({keys.back(), 0});
     return samples;
@@ -160,7 +169,8 @@ private:
     }
 
     void chooseSamples() {
-        const double count = static_cast<double>(keys_.size()) * (stepsPerKey + 1);
+        const int steps = stepsPerKey(scene_, keys_.size());
+        const double count = static_cast<double>(keys_.size()) * (steps + 1);
         if (keys_.empty()) {
             samples_ = {{0, 0}};
             return;
@@ -171,7 +181,7 @@ private:
             samples_ = evenSamples(
                 keys_, static_cast<size_t>(std::clamp(maxEvaluations / pointsToMove(), 16.0, count)));
         } else {
-            samples_ = samplesBetweenKeys(keys_);
+            samples_ = samplesBetweenKeys(keys_, steps);
         }
     }
 
