@@ -9,7 +9,8 @@ namespace kestrel {
 namespace {
 
 // Vertices times samples that may be evaluated; beyond that corners of boxes stand for the vertices.
-constexpr double maxEvaluations = 2e7;
+constexpr double maxEvaluations = 1e7;
+constexpr double verticesPerNode = 8; // what placing a node costs, in vertices
 
 struct DoubleBox {
     glm::dvec3 min{std::numeric_limits<double>::infinity()};
@@ -162,7 +163,7 @@ public:
 
 private:
     [[nodiscard]] double pointsToMove() const {
-        double points = static_cast<double>(scene_.nodes.size());
+        double points = verticesPerNode * static_cast<double>(scene_.nodes.size());
         for (size_t i = 0; i < instances_.size(); ++i)
             if (motion_[i].moves) points += static_cast<double>(instances_[i].primitive->positions.size());
         return points;
