@@ -30,7 +30,7 @@ const Registry& loadedRegistry() {
     // Passes refer to their types until the process ends.
     static const Registry registry = [] {
         Registry loaded;
-        loadPlugins(loaded, {pluginFolder()});
+        loadPlugins(loaded, pluginFolders());
         return loaded;
     }();
     return registry;

@@ -1,6 +1,6 @@
 # kestrel_plugin(NAME source... [SHADERS folder] [OUTPUT folder]): one plugin. The same function builds the passes of
 # the tree and, after find_package(Kestrel), plugins of other projects. The library is called NAME.so and lies in
-# OUTPUT (default: ${KESTREL_PLUGIN_FOLDER}, else kestrel/ in the build folder), where $KESTREL_PLUGINS can point. What
+# OUTPUT (default: ${KESTREL_PLUGIN_FOLDER}, else kestrel/ in the build folder), which $KESTREL_PLUGINS can name. What
 # lies in the folder SHADERS ("my_plugin/my.comp") is found by the plugin's passes under the same path; in the build
 # tree through links, so that an edited shader acts at once.
 function(kestrel_plugin name)

@@ -130,9 +130,24 @@ fs::path shareFolder() {
     return fs::canonical(folder);
 }
 
-fs::path pluginFolder() {
-    if (const char* named = std::getenv("KESTREL_PLUGINS")) return named;
-    return libraryFolder() / "kestrel";
+namespace {
+bool isSame(const fs::path& a, const fs::path& b) {
+    std::error_code failure; // a folder that does not exist is not the same
+    return fs::equivalent(a, b, failure);
+}
+} // namespace
+
+std::vector<fs::path> pluginFolders() {
+    std::vector<fs::path> folders = {libraryFolder() / "kestrel"};
+    const char* named = std::getenv("KESTREL_PLUGINS");
+    std::string_view rest = named == nullptr ? "" : named;
+    while (!rest.empty()) {
+        const size_t colon = rest.find(':');
+        const fs::path folder = rest.substr(0, colon);
+        if (!folder.empty() && !isSame(folder, folders.front())) folders.push_back(folder);
+        rest.remove_prefix(colon == std::string_view::npos ? rest.size() : colon + 1);
+    }
+    return folders;
 }
 
 } // namespace kestrel

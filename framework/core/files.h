@@ -33,7 +33,8 @@ std::filesystem::path pathInside(const std::filesystem::path& folder, std::strin
 // libkestrel (the same layout in the build tree and when installed). Throws MachineError if there is none.
 std::filesystem::path shareFolder();
 
-// The folder of the plugins: $KESTREL_PLUGINS, or `kestrel/` beside libkestrel.
-std::filesystem::path pluginFolder();
+// The folders of the plugins: `kestrel/` beside libkestrel, then those that $KESTREL_PLUGINS names (separated
+// by colons): plugins of others join Kestrel's own.
+std::vector<std::filesystem::path> pluginFolders();
 
 } // namespace kestrel

@@ -65,7 +65,9 @@ void reportOutputs(const Network& network, int index, std::vector<LeftOut>& repo
     }
     for (const Output& output : node.full.outputs) {
         const PortInfo* port = node.type->port(output.port);
-        if (port != nullptr && port->direction == PortDirection::Output && !node.demand.reads(output.port))
+        if (port != nullptr && port->direction == PortDirection::Output && !node.demand.reads(output.port) &&
+            findOutput(node.real, output.port) ==
+                nullptr) // a pass may need for itself what nobody else reads
             report.push_back({node.name() + "." + output.port, "nobody reads it"});
     }
     for (const LeftOut& own : node.real.leftOut)

@@ -83,6 +83,20 @@ TEST(PluginLoader, LoadsFoldersInOrderAndSkipsWhatIsBad) {
     fs::remove_all(folder);
 }
 
+TEST(PluginLoader, TheEnvironmentAddsFoldersToKestrelsOwn) {
+    unsetenv("KESTREL_PLUGINS");
+    const std::vector<fs::path> own = pluginFolders();
+    ASSERT_EQ(own.size(), 1u);
+    EXPECT_EQ(own[0].filename(), "kestrel");
+    setenv("KESTREL_PLUGINS", ("/one::/two:" + own[0].string()).c_str(), 1);
+    const auto folders = pluginFolders();
+    unsetenv("KESTREL_PLUGINS");
+    EXPECT_GE(folders.size(), 3u);
+    EXPECT_EQ(folders[0], own[0]);
+    EXPECT_EQ(folders[1], "/one");
+    EXPECT_EQ(folders[2], "/two");
+}
+
 TEST(PluginLoader, TheStampNamesVersionHeadersAndCompiler) {
     EXPECT_THAT(abiStamp(), testing::MatchesRegex("kestrel [0-9.]+, headers [0-9a-f]+, compiler .*, C\\+\\+ "
                                                   "[0-9]+L?, [a-z-]+, sizes [0-9]+"));
