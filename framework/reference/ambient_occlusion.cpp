@@ -57,6 +57,16 @@ void basisOf(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent) {
     bitangent = {b, sign + n.y * n.y * a, -n.y};
 }
 
+// Point `index` of the Owen-scrambled Sobol sequence of `seed`: shared::scrambledSobol without the shuffled
+// order, which only a running sequence needs.
+glm::vec2 sobolPoint(std::uint32_t index, std::uint32_t seed) {
+    const std::uint32_t x = shared::reverseBits32(shared::laineKarras(index, shared::hashCombine(seed, 1)));
+    const std::uint32_t y = shared::owenScramble(shared::sobol1(index), shared::hashCombine(seed, 2));
+    return {shared::unitFloat(x), shared::unitFloat(y)};
+}
+
+constexpr int packet = 16; // rays that the tracer takes at once
+
 class OcclusionPass {
 public:
     OcclusionPass(const ReferenceTracer& tracer, const OcclusionInputs& inputs,
@@ -101,16 +111,19 @@ private:
         const glm::vec3 origin = position + face * (settings_.relativeOffset * scale);
         glm::vec3 tangent, bitangent;
         basisOf(normal, tangent, bitangent);
-        const glm::uvec2 pixel(x, y);
         const auto dimension = shared::randomReference + static_cast<std::uint32_t>(half);
-        const std::uint32_t seed = shared::pixelSeed(pixel, dimension, settings_.seed);
-        for (int i = 0; i < half_; ++i) {
-            const glm::vec2 disk =
-                concentricDisk(shared::scrambledSobol(static_cast<std::uint32_t>(i), seed));
-            const float up = std::sqrt(std::max(0.0f, 1 - glm::dot(disk, disk)));
-            const glm::vec3 direction = tangent * disk.x + bitangent * disk.y + normal * up;
-            if (glm::dot(direction, face) > 0)
-                rays.push_back({origin, direction, 0, settings_.maximumDistance});
+        const std::uint32_t seed = shared::pixelSeed(glm::uvec2(x, y), dimension, settings_.seed);
+        // Samples whose indices are equal modulo `stride` share a stratum of the first dimension: packets of
+        // rays that run alike. How many are blocked does not depend on the order.
+        const int stride = (half_ + packet - 1) / packet;
+        for (int k = 0; k < stride; ++k) {
+            for (int i = k; i < half_; i += stride) {
+                const glm::vec2 disk = concentricDisk(sobolPoint(static_cast<std::uint32_t>(i), seed));
+                const float up = std::sqrt(std::max(0.0f, 1 - glm::dot(disk, disk)));
+                const glm::vec3 direction = tangent * disk.x + bitangent * disk.y + normal * up;
+                if (glm::dot(direction, face) > 0)
+                    rays.push_back({origin, direction, 0, settings_.maximumDistance});
+            }
         }
     }
 
