@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "common.h"
 #include "core/files.h"
+#include "core/log.h"
 #include "gl/context.h"
 #include "measure/run_stats.h"
 #include "scene/facts.h"
@@ -21,13 +22,21 @@ using Json = nlohmann::ordered_json;
 
 struct CheckArguments : GraphArguments {
     std::string capabilities;
-    bool gl = false, keepAll = false, json = false, noShaders = false;
+    bool gl = false, minimum = false, keepAll = false, json = false, noShaders = false;
 };
 
+// Those of the file, the minimum, or of this machine: what `render` would run here. Without OpenGL here, the
+// minimum.
 Capabilities capabilitiesOf(const CheckArguments& arguments) {
     if (!arguments.capabilities.empty()) return readCapabilities(arguments.capabilities);
+    if (arguments.minimum) return {};
     if (arguments.gl) return gl::Context::create()->capabilities();
-    return {};
+    try {
+        return gl::Context::create()->capabilities();
+    } catch (const MachineError& error) {
+        logWarning("checked against the minimum of OpenGL 4.6, since there is none here: {}", error.what());
+        return {};
+    }
 }
 
 // Every program of the plan, composed and parsed as a driver would.
@@ -54,7 +63,9 @@ std::vector<std::string> stepNames(const Plan& plan, const PlanPass& pass) {
     return names;
 }
 
-void printPlan(const Plan& plan) {
+void printPlan(const Plan& plan, const Capabilities& capabilities) {
+    fmt::print("for: OpenGL {}, {}\n", capabilities.version,
+               capabilities.renderer == "none" ? "the minimum" : capabilities.renderer);
     fmt::print("order:\n");
     for (const PlanPass& pass : plan.passes)
         fmt::print("  {} ({}): {}\n", pass.name, pass.type, fmt::join(stepNames(plan, pass), ", "));
@@ -66,7 +77,7 @@ void printPlan(const Plan& plan) {
     printLeftOut(plan.leftOut);
 }
 
-Json planJson(const Graph& graph, const Scene& scene, const Plan& plan) {
+Json planJson(const Graph& graph, const Scene& scene, const Plan& plan, const Capabilities& capabilities) {
     Json passes = Json::array(), resources = Json::array(), leftOut = Json::array();
     for (const PlanPass& pass : plan.passes)
         passes.push_back({{"name", pass.name}, {"type", pass.type}, {"steps", stepNames(plan, pass)}});
@@ -81,6 +92,7 @@ Json planJson(const Graph& graph, const Scene& scene, const Plan& plan) {
     return {{"graph", graph.name},
             {"scene", scene.name},
             {"size", {plan.size.width, plan.size.height}},
+            {"renderer", capabilities.renderer},
             {"passes", passes},
             {"resources", resources},
             {"left_out", leftOut},
@@ -105,9 +117,10 @@ int check(const CheckArguments& arguments) {
     const Plan plan = compile(graph, registry, makePasses(graph, registry), world, options);
     if (!arguments.noShaders) requireShaders(plan, registry);
     if (arguments.json)
-        fmt::print("{}\n", planJson(graph, scene, plan).dump(2, ' ', false, Json::error_handler_t::replace));
+        fmt::print("{}\n", planJson(graph, scene, plan, world.capabilities)
+                               .dump(2, ' ', false, Json::error_handler_t::replace));
     else
-        printPlan(plan);
+        printPlan(plan, world.capabilities);
     return static_cast<int>(ExitStatus::Done);
 }
 
@@ -119,10 +132,14 @@ void addCheckCommand(CLI::App& app, Run& run) {
         "Validate a graph and its shaders; tell the order, what is left out and why, and the memory");
     const auto arguments = std::make_shared<CheckArguments>();
     addGraphArguments(*command, *arguments);
-    CLI::Option* file =
-        command->add_option("--capabilities", arguments->capabilities,
-                            "What the machine can do, as JSON; default: the minimum of OpenGL 4.6");
-    command->add_flag("--gl", arguments->gl, "Take what this machine's OpenGL can do")->excludes(file);
+    CLI::Option* file = command->add_option("--capabilities", arguments->capabilities,
+                                            "What the machine can do, as JSON; default: what this one can");
+    CLI::Option* minimum = command->add_flag(
+        "--minimum", arguments->minimum, "Take the least that OpenGL 4.6 guarantees; needs no OpenGL here");
+    command->add_flag("--gl", arguments->gl, "Fail (exit 3) if this machine has no OpenGL 4.6")
+        ->excludes(file)
+        ->excludes(minimum);
+    minimum->excludes(file);
     command->add_flag("--keep-all", arguments->keepAll, "Leave nothing out");
     command->add_flag("--no-shaders", arguments->noShaders, "Do not look at the shaders");
     command->add_flag("--json", arguments->json, "Print JSON");

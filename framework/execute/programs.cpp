@@ -1,4 +1,5 @@
 #include "execute/programs.h"
+#include "gl/loader.h"
 #include "shader/trips.h"
 #include <optional>
 
@@ -6,19 +7,20 @@ namespace kestrel {
 
 namespace {
 
-bool mentionsBeyond(const std::string& text, std::string_view name, int declared) {
+int occurrences(const std::string& text, std::string_view name) {
     int found = 0;
     for (size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + name.size()))
         ++found;
-    return found > declared;
+    return found;
 }
 
-// shared/view.h declares the matrix once; a vertex input is declared once where there is one.
-bool readsLastMotion(const ComposedProgram& composed) {
+// Members of uniform blocks all count as active, so the text must tell: shared/view.h names the matrix once,
+// where it declares it. To find it in a comment costs a run too many, never one too few.
+bool readsLastMotion(const ComposedProgram& composed, const gl::Program& program) {
+    if (glGetAttribLocation(program.name(), "in_previous_position") >= 0) return true;
+    if (program.slot("scene_previous_positions") || program.slot("ScenePreviousPositions")) return true;
     for (const ComposedStage& stage : composed.stages)
-        if (mentionsBeyond(stage.text, "previousViewProjection", 1) ||
-            mentionsBeyond(stage.text, "previousPosition", 1))
-            return true;
+        if (occurrences(stage.text, "previousViewProjection") > 1) return true;
     return false;
 }
 
@@ -64,7 +66,7 @@ void Programs::adopt(const Plan& plan, ShaderLibrary& library, const Capabilitie
                 made->name = text.name;
                 made->key = text.key;
                 made->countsTrips = made->program->slot(tripsBlockName).has_value();
-                made->readsLastMotion = readsLastMotion(text);
+                made->readsLastMotion = readsLastMotion(text, *made->program);
                 entry = std::move(made);
             } catch (const InputError& error) {
                 note(error);

@@ -1,0 +1,118 @@
+"""kestrel check, dot, passes, scene, compare, and the usage."""
+import json
+from pathlib import Path
+
+from kestrel_cli import RAY_AO, done, folder, kestrel, refused, run_tests
+
+BLOB = ["--scene", "builtin:blob?detail=0.05"]
+
+
+def test_check_lists_order_memory_and_what_is_left_out():
+    out = done("check", RAY_AO, *BLOB).out
+    order = out[out.index("order:"):out.index("resources:")]
+    assert order.index("bom (") < order.index("roma (") < order.index("ao (") < order.index("mean ("), order
+    assert "unshared" in out
+    assert "left out: bvh, because nobody reads" in out
+    assert "because no material is masked or blended" in out
+
+
+def test_check_needs_no_opengl():
+    without = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/none", "LIBGL_DRIVERS_PATH": "/none", "EGL_PLATFORM": "none"}
+    out = done("check", RAY_AO, *BLOB, "--minimum", env=without).out
+    assert "the minimum" in out
+    refused("check", RAY_AO, *BLOB, "--gl", env=without, status=3)
+    fallen = kestrel("check", RAY_AO, *BLOB, env=without)
+    assert fallen.status == 0 and "minimum of OpenGL 4.6" in fallen.err, fallen.err
+
+
+def test_check_says_what_the_swap_leaves_out():
+    out = done("check", RAY_AO, *BLOB, "--set", "ao.tracer=bvh.tracer", "--json").json()
+    names = [item["name"] for item in out["passes"]]
+    assert "bvh" in names and "roma" not in names and "bom" not in names
+    why = {item["what"]: item["why"] for item in out["left_out"]}
+    assert "roma" in why and "bom" in why, why
+
+
+def test_check_keep_all_leaves_nothing_out():
+    out = done("check", RAY_AO, *BLOB, "--keep-all", "--json").json()
+    assert "bvh" in [item["name"] for item in out["passes"]]
+
+
+def test_check_takes_capabilities_from_a_file():
+    with folder() as here:
+        file = Path(here) / "caps.json"
+        file.write_text('{"renderer": "small", "max_texture_buffer_texels": 16}')
+        lines = refused("check", RAY_AO, *BLOB, "--set", "ao.tracer=bvh.tracer", "--capabilities", file)
+        assert any("texel" in line for line in lines), lines
+        file.write_text('{"max_texel_size": 16, "extensions": [1]}')
+        lines = refused("check", RAY_AO, *BLOB, "--capabilities", file)
+        assert any("caps.json:1:2" in line and "max_texel_size" in line for line in lines), lines
+
+
+def test_check_tells_every_mistake_with_its_place():
+    with folder() as here:
+        file = Path(here) / "bad.json"
+        file.write_text(Path(RAY_AO).read_text().replace('"type": "Roma"', '"type": "Rhoma"')
+                        .replace('"ao.depth"', '"ao.dept"'))
+        lines = refused("check", file, *BLOB)
+        assert any("'Rhoma'" in line and "did you mean 'Roma'" in line and "bad.json:" in line for line in lines), lines
+        assert any("'dept'" in line or "ao.dept" in line for line in lines), lines
+        file.write_text('{"kestrel": 1,\n "passes": [}')
+        assert "bad.json:2:" in refused("check", file, *BLOB)[0]
+
+
+def test_dot_draws_what_is_left_out_faded():
+    out = done("dot", RAY_AO, *BLOB).out
+    assert out.startswith("digraph")
+    faded = [line for line in out.splitlines() if line.strip().startswith('"bvh" [')]
+    assert len(faded) == 1 and "dashed" in faded[0] and "nobody reads" in faded[0], faded
+    assert '"roma" -> "ao" [label="tracer", style=bold]' in out
+
+
+def test_passes_lists_and_tells():
+    assert "Roma" in done("passes").out
+    assert "angular" in done("passes", "Roma").out
+    table = done("passes", "--json").json()["passes"]
+    roma = [item for item in table if item["name"] == "Roma"][0]
+    assert {"name", "direction", "kind", "optional", "sentence"} <= set(roma["ports"][0])
+    assert "did you mean 'Roma'" in refused("passes", "Rmoa")[0]
+    assert "$schema" in json.loads(done("passes", "--schema").out)
+
+
+def test_scene_lists_tells_and_exports():
+    assert "builtin:tower" in done("scene", "list").out
+    info = done("scene", "info", "builtin:blob?detail=0.05", "--json").json()
+    assert info["facts"]["triangles"] > 0 and info["facts"]["masked"] is False and info["cameras"]
+    with folder() as here:
+        done("scene", "export", "builtin:blob?detail=0.05", f"{here}/blob.glb")
+        again = done("scene", "info", f"{here}/blob.glb", "--json").json()
+        assert again["facts"]["triangles"] == info["facts"]["triangles"]
+        assert "out.xyz" in refused("scene", "export", "builtin:blob", f"{here}/none/../out.xyz")[0]
+
+
+def test_compare_measures_and_holds_limits():
+    with folder() as here:
+        for name, value in [("a", 0), ("b", 7)]:
+            done("render", RAY_AO, *BLOB, "--size", "64x36", "--seed", value, "--output", f"mean.result={here}/{name}.png")
+        same = done("compare", f"{here}/a.png", f"{here}/a.png", "--json").json()
+        assert same["mse"] == 0 and same["flip"]["mean"] == 0
+        other = done("compare", f"{here}/a.png", f"{here}/b.png", "--json", "--heatmap", f"{here}/heat.png").json()
+        assert {"mse", "rmse", "psnr", "ssim", "flip"} <= set(other) and other["mse"] > 0
+        assert (Path(here) / "heat.png").exists()
+        limit = kestrel("compare", f"{here}/a.png", f"{here}/b.png", "--max", "mse=0")
+        assert limit.status == 1 and "mse" in limit.err, limit.err
+
+
+def test_usage():
+    assert "kestrel 0" in done("--version").out and "backends: egl" in done("--version").out
+    for command in ["render", "check", "passes", "dot", "compare", "scene"]:
+        assert command in done("--help").out
+        assert "Example" in done(command, "--help").out
+    assert "--help" in refused()[0]
+    assert "frobnicate" in refused("frobnicate")[0]
+    assert "--frobnicate" in refused("render", RAY_AO, "--frobnicate")[0]
+    assert len(refused("render")) == 1
+
+
+if __name__ == "__main__":
+    run_tests(globals())
