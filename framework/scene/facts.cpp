@@ -104,7 +104,8 @@ SceneFacts gatherFacts(const Scene& scene) {
     facts.images = static_cast<std::uint32_t>(scene.images.size());
     facts.colourTextureArrays =
         static_cast<std::uint32_t>(textureArrays(scene, TextureRole::Colour).arrays.size());
-    facts.dataTextureArrays = static_cast<std::uint32_t>(textureArrays(scene, TextureRole::Data).arrays.size());
+    facts.dataTextureArrays =
+        static_cast<std::uint32_t>(textureArrays(scene, TextureRole::Data).arrays.size());
     facts.duration = scene.duration();
     measure(scene, facts);
     return facts;
