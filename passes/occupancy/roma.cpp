@@ -89,6 +89,7 @@ PassType Roma::type() {
                 "How many columns a ray that is not snapped may cross; then it counts as unoccluded")
         .number("offset", &Roma::offset, 0, 8, "cells",
                 "How far ray origins are moved off the surface, along its normal")
+        .number("skip", &Roma::skip, 0, 8, "cells", "How far rays from a surface go before anything counts")
         .flag("resample", &Roma::resample, "New candidate directions every frame; otherwise those of frame 0")
         .flag("count_exhausted", &Roma::countExhausted,
               "Counts the rays that ran out of iterations and reports them with the next frame");
@@ -181,7 +182,7 @@ void Roma::upload(const Step& step, Commands& commands) {
         strataAngular_ = angular;
     }
     drawCandidates(strata_, angular, resample ? commands.frame().index : 0, commands.frame().seed);
-    commands.uploadValue("directions", shared::RomaSettings{offset, 0, 0, 0});
+    commands.uploadValue("directions", shared::RomaSettings{offset, skip, 0, 0});
     commands.upload("directions", strata_, sizeof(shared::RomaSettings));
     const auto n = strata_.size();
     if (uses(step, "rotations")) {

@@ -19,7 +19,8 @@ public:
 
     int angular = 4;
     int iterations = 8;
-    float offset = 1.5f;
+    float offset = 0.75f;
+    float skip = 1;
     bool resample = true;
     bool countExhausted = false;
 

@@ -15,8 +15,12 @@
 // Not snapping, the ray goes through the map of its stratum's candidate in a DDA over columns, each tested in one step
 // along z; after ITERATIONS columns the ray counts as unoccluded.
 //
-// A cell occludes if the closed interval [tMin, tMax] of the ray, from the origin moved off the surface, meets it; the
-// reported t is the middle of the ray's way through the cell, kept within [tMin, tMax].
+// A ray that starts on a surface would meet the cells that the surface itself occupies. Its origin is moved along the
+// normal (section 6), and the first `skip` cells along it do not count: a ray leaves the surface's cells sideways too, and
+// moving it less far off the surface keeps more of what lies close by.
+//
+// A cell occludes if the closed interval [tMin, tMax] of the ray, so moved, meets it; the reported t is the middle of the
+// ray's way through the cell, kept within [tMin, tMax].
 //
 // Algorithm 2 as printed tests signed words (an occupied top cell reads as a miss), shifts by 32, loses half a cell on one
 // of the two ways, and transforms the direction like a point; here words are unsigned, masks are built of shifts below
@@ -143,6 +147,12 @@ vec3 M(alignedOrigin)(Ray ray, vec3 axis) {
     return M(align)(centred, axis) + vec3(RESOLUTION / 2);
 }
 
+// Where the ray begins to count, in cells along it.
+float M(begin)(Ray ray) {
+    float skipped = ray.normal != vec3(0.0) ? M(settings).skip : 0.0;
+    return max(ray.tMin * M(grid).inverseCellSize, skipped);
+}
+
 #ifdef TAKES_SNAP
 
 // Where a snapped ray goes: one column, and the cells from `first` to `last` in it.
@@ -161,7 +171,7 @@ M(Way) M(way)(Ray ray) {
     way.map = int(ray.token & 0xffffu);
     way.up = (ray.token & M(flipped)) == 0u;
     vec3 origin = M(alignedOrigin)(ray, way.up ? ray.direction : -ray.direction);
-    float from = ray.tMin * M(grid).inverseCellSize;
+    float from = M(begin)(ray);
     float to = ray.tMax * M(grid).inverseCellSize;
     way.at = ivec2(floor(clamp(origin.xy, vec2(-1.0), vec2(RESOLUTION))));
     way.first = M(cellAt)(way.up ? origin.z + from : origin.z - to);
@@ -208,7 +218,7 @@ int M(walk)(Ray ray, bool nearest, out float t) {
     vec3 high = (vec3(RESOLUTION) - origin) * inverse;
     vec3 nearer = min(low, high);
     vec3 farther = max(low, high);
-    float from = max(ray.tMin * M(grid).inverseCellSize, max(nearer.x, max(nearer.y, nearer.z)));
+    float from = max(M(begin)(ray), max(nearer.x, max(nearer.y, nearer.z)));
     float to = min(ray.tMax * M(grid).inverseCellSize, min(farther.x, min(farther.y, farther.z)));
     if (!(from <= to)) return -1;
 

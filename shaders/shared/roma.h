@@ -23,7 +23,7 @@ struct RomaDirection {
 // The rest of that block, ahead of the candidates.
 struct RomaSettings {
     float originOffset; // along the ray's normal, in cells
-    float pad0;
+    float skip;         // along the ray, in cells: how far rays from a surface go before anything counts
     float pad1;
     float pad2;
 };

@@ -64,14 +64,16 @@ TEST_F(OccupancyMapGl, ThreeAxisMethodsGiveTheSameBits) {
         for (const auto& [method, extension] :
              {std::pair("framebuffer_fetch", "GL_EXT_shader_framebuffer_fetch"),
               std::pair("interlock", "GL_ARB_fragment_shader_interlock")})
-            if (context().capabilities().has(extension))
+            if (context().capabilities().has(extension)) {
                 EXPECT_EQ(mapOf(scene, n, method), reference) << method;
+            }
     }
 }
 
-// What a rasterizer marks, a triangle meets; the fuller the method, the fewer cells are missed.
+// What a rasterizer marks, a triangle meets; what it misses are cells that a surface crosses beside their
+// centre lines.
 TEST_F(OccupancyMapGl, RasterizedCellsAreMetByTriangles) {
-    const Scene scene = sceneOf(randomTriangles(200, 3));
+    const Scene scene = loadScene("builtin:blob?detail=0.1");
     for (const int n : {32, 128}) {
         const std::vector<std::uint32_t> exact = mapOf(scene, n, "exact");
         for (const char* method : {"three_axis", "dominant_axis"}) {
@@ -81,8 +83,7 @@ TEST_F(OccupancyMapGl, RasterizedCellsAreMetByTriangles) {
                 extra += static_cast<size_t>(std::popcount(map[i] & ~exact[i]));
             // The rasterizer snaps corners to a grid of 1/256 pixel.
             EXPECT_LT(extra, setBits(exact) / 500) << method;
-            // Many of these triangles are smaller than a cell and slip between the centre lines.
-            EXPECT_GT(setBits(map), setBits(exact) / 2) << method;
+            EXPECT_GT(setBits(map), setBits(exact) * 11 / 20) << method;
             EXPECT_LT(setBits(map), setBits(exact)) << method;
         }
     }

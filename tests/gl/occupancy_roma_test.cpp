@@ -14,7 +14,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct Maps {
     int n = 0;
     shared::OccupancyGrid grid{};
-    float offset = 0;
+    float offset = 0, skip = 0;
     std::vector<shared::RomaDirection> directions;
     std::vector<shared::RomaRotation> rotations;
     std::vector<std::uint32_t> base, rotated;
@@ -35,6 +35,7 @@ Maps mapsOf(Renderer& renderer) {
     maps.rotations = as<shared::RomaRotation>(renderer.readBytes({"roma", "rotations"}));
     std::vector<std::byte> block = renderer.readBytes({"roma", "directions"});
     maps.offset = as<shared::RomaSettings>(block).at(0).originOffset;
+    maps.skip = as<shared::RomaSettings>(block).at(0).skip;
     block.erase(block.begin(), block.begin() + sizeof(shared::RomaSettings));
     maps.directions = as<shared::RomaDirection>(block);
     return maps;
@@ -70,7 +71,9 @@ AlignedRay aligned(const Maps& maps, int map, const shared::RayRecord& ray, cons
     const double cell = maps.grid.cellSize;
     const glm::dvec3 centred = (glm::dvec3(ray.origin) - glm::dvec3(maps.grid.centre)) / cell +
                                double(maps.offset) * glm::dvec3(ray.normal);
-    return {map, align(centred) + 0.5 * maps.n, align(direction), ray.tMin / cell, ray.tMax / cell};
+    const double skip = ray.normal == glm::vec3(0) ? 0.0 : maps.skip;
+    return {map, align(centred) + 0.5 * maps.n, align(direction), std::max(ray.tMin / cell, skip),
+            ray.tMax / cell};
 }
 
 // The ray's way through those of `cells` that it meets for more than `least` cells of its length: entry and
@@ -172,7 +175,7 @@ TEST_F(OccupancyRoma, SnappedQueriesAgreeWithBruteForce) {
     for (const float scale : {1.0f, 1e-4f, 1e4f}) {
         for (const int n : {32, 64, 128, 256}) {
             RaySource::rays = raysAround(n <= 64 ? 3000 : 400, scale, 3);
-            const std::string roma = R"("angular": 4, "offset": 1.5)";
+            const std::string roma = R"("angular": 4, "offset": 1.5, "skip": 0.7)";
             Renderer any = romaRenderer(sceneOf(randomTriangles(120, 2, scale)), resolution(n), roma,
                                         R"("query": "any", "snap": true)");
             Renderer closest = romaRenderer(sceneOf(randomTriangles(120, 2, scale)), resolution(n), roma,
@@ -204,7 +207,7 @@ TEST_F(OccupancyRoma, SnappedQueriesAgreeWithBruteForce) {
                 const double cell = maps.grid.cellSize;
                 const glm::dvec3 entered = line.origin + line.direction * (sure.front().first + 1e-3);
                 const double middle = (std::floor(entered.z) + 0.5 - line.origin.z) / line.direction.z;
-                EXPECT_NEAR(hits[i].t / cell, std::clamp(middle, line.from, line.to), 2e-3);
+                EXPECT_NEAR(hits[i].t / cell, std::clamp(middle, ray.tMin / cell, line.to), 2e-3);
             }
             EXPECT_GT(compared, static_cast<int>(hits.size()) * 9 / 10);
             EXPECT_GT(hitCount, static_cast<int>(hits.size()) / 20);
@@ -255,6 +258,151 @@ TEST_F(OccupancyRoma, UnsnappedQueriesAgreeWithBruteForce) {
         EXPECT_EQ(compared, 600);
         EXPECT_GT(hitCount, 60);
     }
+}
+
+// A flat plate across the ball, thin along z.
+std::vector<glm::vec3> plate(float z) {
+    return {{-0.9f, -0.3f, z}, {0.9f, -0.3f, z}, {0, 0.9f, z}, {0, 0, -1}, {0, 1e-3f, -1}, {1e-3f, 0, -1}};
+}
+
+std::vector<shared::HitRecord> queried(const std::vector<glm::vec3>& corners, const std::string& roma,
+                                       const std::string& query, RenderOptions options = {}) {
+    Renderer renderer =
+        romaRenderer(sceneOf(corners), R"("resolution": 64, "method": "exact")", roma, query, options);
+    renderer.frame();
+    return as<shared::HitRecord>(renderer.readBytes({"query", "hits"}));
+}
+
+TEST_F(OccupancyRoma, BoundsOfARayCountInAnyDirection) {
+    const Scene scene = sceneOf(plate(0.5f));
+    const glm::vec3 shift(scene.origin);
+    const float cell = 2.0f / 62;
+    const glm::vec3 at = glm::vec3(0, 0.1f, 0) - shift;
+    const glm::vec3 up(0, 0, 1);
+    RaySource::rays = {
+        rayRecord(at, up),                             // meets the plate
+        rayRecord(at, -up),                            // goes away from it
+        rayRecord(at, up, 0, 0.5f - 3 * cell),         // ends before it
+        rayRecord(at, up, 0, 0.5f + 3 * cell),         // ends behind it
+        rayRecord(at, up, 0.5f + 3 * cell),            // begins behind it
+        rayRecord(at + 3.0f * up, -up),                // comes from outside the map
+        rayRecord(at + 3.0f * up, up),                 // never comes in
+        rayRecord(at + glm::vec3(5, 0, 0), up),        // passes beside it
+        rayRecord(at + 0.5f * up, up, 0, 0.1f * cell), // within the plate's cells
+        rayRecord(at, up, 2, 1),                       // is empty
+    };
+    const bool expected[] = {true, false, false, true, false, true, false, false, true, false};
+    for (const char* query : {R"("query": "any")", R"("query": "closest")"}) {
+        const auto hits = queried(plate(0.5f), R"("angular": 2, "iterations": 256)", query);
+        for (size_t i = 0; i < hits.size(); ++i)
+            EXPECT_EQ(!std::isinf(hits[i].t), expected[i]) << query << " ray " << i;
+    }
+    const auto closest = queried(plate(0.5f), R"("angular": 2, "iterations": 256)", R"("query": "closest")");
+    EXPECT_NEAR(closest[0].t, 0.5f, 2 * cell);
+    EXPECT_NEAR(closest[5].t, 2.5f, 2 * cell);
+}
+
+TEST_F(OccupancyRoma, NothingIsHitInAnEmptyScene) {
+    RaySource::rays = raysAround(50, 1, 9);
+    for (const char* query : {R"("query": "any", "snap": true)", R"("query": "closest")"}) {
+        Renderer renderer = romaRenderer(emptyScene(), "", "", query);
+        renderer.frame();
+        for (const shared::HitRecord& hit : as<shared::HitRecord>(renderer.readBytes({"query", "hits"})))
+            EXPECT_TRUE(std::isinf(hit.t));
+        const auto& reasons = renderer.plan().leftOut;
+        EXPECT_TRUE(std::any_of(reasons.begin(), reasons.end(), [](const LeftOut& left) {
+            return left.why == "the occupancy map is empty";
+        }));
+    }
+}
+
+// aim says what will be traced: the candidate of the ray's stratum, with the weight that C++ works out too.
+TEST_F(OccupancyRoma, AimReplacesTheDirectionAndWeighsIt) {
+    RaySource::rays.clear();
+    std::mt19937 random(8);
+    std::normal_distribution<float> normal;
+    const auto direction = [&] {
+        return glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+    };
+    for (int i = 0; i < 2000; ++i)
+        RaySource::rays.push_back(
+            rayRecord(glm::vec3(0), direction(), 0, 1, i % 5 == 0 ? glm::vec3(0) : direction()));
+    Renderer renderer = romaRenderer(sceneOf(randomTriangles(20, 2)), R"("resolution": 32)",
+                                     R"("angular": 5)", R"("query": "any", "snap": true)");
+    std::vector<glm::vec3> last;
+    for (int frame = 0; frame < 3; ++frame) {
+        renderer.frame();
+        const Maps maps = mapsOf(renderer);
+        const auto hits = as<shared::HitRecord>(renderer.readBytes({"query", "hits"}));
+        int atBorder = 0;
+        for (size_t i = 0; i < hits.size(); ++i) {
+            const shared::RayRecord& ray = RaySource::rays[i];
+            const float flip = ray.direction.z < 0 ? -1.0f : 1.0f;
+            const auto k = static_cast<size_t>(shared::stratumOf(flip * ray.direction, 5));
+            if (hits[i].direction != flip * maps.directions[k].direction) {
+                ++atBorder;
+                continue;
+            }
+            const bool surface = ray.normal != glm::vec3(0);
+            const float weight =
+                surface ? shared::romaWeight(maps.directions[k], flip, hits[i].direction, ray.normal) : 1.0f;
+            EXPECT_NEAR(hits[i].weight, weight, 1e-4f * std::max(1.0f, weight));
+        }
+        EXPECT_LT(atBorder, 3);
+        for (const glm::vec3& before : last) EXPECT_NE(before, maps.directions[last.size() - 1].direction);
+        last.assign(1, maps.directions[0].direction);
+    }
+}
+
+TEST_F(OccupancyRoma, WithoutResamplingTheMapsAreMadeOnce) {
+    RaySource::rays = raysAround(10, 1, 9);
+    RenderOptions options;
+    options.timing = true;
+    Renderer renderer = romaRenderer(sceneOf(randomTriangles(20, 2)), R"("resolution": 32)",
+                                     R"("resample": false)", R"("query": "any", "snap": true)", options);
+    const auto rotated = [](const FrameRecord& record) {
+        return std::any_of(record.samples.begin(), record.samples.end(),
+                           [](const StepSample& sample) { return sample.step == "rotate"; });
+    };
+    EXPECT_TRUE(rotated(renderer.frame()));
+    EXPECT_FALSE(rotated(renderer.frame()));
+    renderer.set("roma.resample=true");
+    renderer.frame();
+    EXPECT_TRUE(rotated(renderer.frame()));
+}
+
+// Rays that run out of columns are counted, and reported with the next frame.
+TEST_F(OccupancyRoma, CountsExhaustedRays) {
+    RaySource::rays.clear();
+    // Below the plate, across half the map, far from any candidate's axis at 2 x 2 strata.
+    for (int i = 0; i < 100; ++i)
+        RaySource::rays.push_back(rayRecord({-0.9f, 0, -0.5f}, {1, 0.001f * float(i), 0.02f}));
+    for (const auto& [iterations, exhausted] : {std::pair(1, 100.0), std::pair(256, 0.0)}) {
+        Renderer renderer = romaRenderer(sceneOf(plate(0.5f)), R"("resolution": 64)",
+                                         R"("angular": 2, "count_exhausted": true, "iterations": )" +
+                                             std::to_string(iterations),
+                                         R"("query": "any")");
+        renderer.frame();
+        const auto& values = renderer.frame().values.at("roma");
+        EXPECT_EQ(values.at("rays"), 100.0);
+        EXPECT_EQ(values.at("exhausted rays"), exhausted);
+    }
+}
+
+TEST_F(OccupancyRoma, RefusesABufferThatIsNoMap) {
+    Roma roma;
+    Inputs inputs;
+    inputs.set("occupancy", {Desc::buffer(1000, Format::R32UI), {}, Causes::All});
+    inputs.set("grid", {Desc::buffer(32), {}, Causes::All});
+    Declaration declaration = roma.declare({}, inputs, Demand::everything());
+    ASSERT_EQ(declaration.problems.size(), 1u);
+    EXPECT_EQ(declaration.problems[0].port, "occupancy");
+    // 256 maps of 256 cells an edge are more than the least that OpenGL promises for a storage block.
+    inputs.set("occupancy", {Desc::buffer(occupancyBytes(256), Format::R32UI), {}, Causes::All});
+    roma.angular = 16;
+    declaration = roma.declare({}, inputs, Demand::everything());
+    ASSERT_EQ(declaration.problems.size(), 1u);
+    EXPECT_NE(declaration.problems[0].message.find("536870912"), std::string::npos);
 }
 
 } // namespace
