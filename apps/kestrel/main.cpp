@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/version.h"
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 #include <new>
@@ -45,6 +46,19 @@ std::string oneLine(std::string text) {
         if (c == '\n' || c == '\r') c = ' ';
     while (text.ends_with(' ')) text.pop_back();
     return text;
+}
+
+// Why the first word is no command; empty if it is one.
+std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word.starts_with('-')) continue;
+        if (std::ranges::find(names, word) != names.end()) return {};
+        return fmt::format("there is no command '{}'{}", word, didYouMean(word, names));
+    }
+    return {};
 }
 
 int runGuarded(const Run& run) {
@@ -97,7 +111,9 @@ int main(int argc, char** argv) {
     } catch (const CLI::Success& done) {
         return app.exit(done);
     } catch (const CLI::ParseError& error) {
-        return tell(ExitStatus::BadInput, oneLine(error.what()) + " ('kestrel --help' tells the usage)");
+        const std::string unknown = unknownCommand(app, argc, argv);
+        return tell(ExitStatus::BadInput, (unknown.empty() ? oneLine(error.what()) : unknown) +
+                                              " ('kestrel --help' tells the usage)");
     }
     setLogLevel(quiet ? LogLevel::Error : verbose ? LogLevel::Debug : LogLevel::Warning);
     return runGuarded(run);

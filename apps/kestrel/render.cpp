@@ -56,6 +56,7 @@ int render(const RenderArguments& arguments) {
     options.shareMemory = !arguments.noSharing;
     options.checkFinite = arguments.checkFinite;
     options.timing = !arguments.stats.empty();
+    options.finishFrames = true;
     std::vector<OutputFile> outputs;
     for (const std::string& text : arguments.outputs) {
         outputs.push_back(parseOutput(text));

@@ -78,6 +78,8 @@ int tellScene(const std::string& source, bool json) {
 }
 
 int exportTo(const std::string& source, const std::string& file) {
+    if (std::filesystem::path(file).extension() != ".glb")
+        throw InputError(fmt::format("{}: scenes are written as .glb", file));
     exportScene(openScene(source), file);
     fmt::print("{}\n", file);
     return 0;

@@ -11,6 +11,17 @@ namespace kestrel {
 
 namespace {
 
+class DebugGroup {
+public:
+    DebugGroup(int id, const std::string& label) {
+        glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, static_cast<GLuint>(id),
+                         static_cast<GLsizei>(label.size()), label.c_str());
+    }
+    ~DebugGroup() { glPopDebugGroup(); }
+    DebugGroup(const DebugGroup&) = delete;
+    DebugGroup& operator=(const DebugGroup&) = delete;
+};
+
 GLbitfield barrierBits(Barrier barrier) {
     static constexpr std::pair<Barrier, GLbitfield> table[] = {
         {Barrier::VertexAttrib, GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT},
@@ -75,19 +86,31 @@ bool Executor::run(const FrameScene& frame, Causes events) {
     for (PassState& state : states_)
         if (state.runs) state.pending |= state.causes;
 
-    beginFrame(frame);
-    unfinished_ = true;
-    for (size_t i = 0; i < current.passes.size(); ++i) {
-        if (!states_[i].runs) continue;
-        if (!runPass(static_cast<int>(i), frame)) return false;
-        states_[i].pending = Causes::None;
-        states_[i].done = true;
+    try {
+        beginFrame(frame);
+        unfinished_ = true;
+        for (size_t i = 0; i < current.passes.size(); ++i) {
+            if (!states_[i].runs) continue;
+            if (!runPass(static_cast<int>(i), frame)) return false;
+            states_[i].pending = Causes::None;
+            states_[i].done = true;
+        }
+        collectSamples(frame.info.index);
+        // Whoever reads the results back sees what shaders wrote.
+        glMemoryBarrier(barrierBits(Barrier::BufferUpdate));
+        checkTrips();
+    } catch (...) {
+        abandonFrame();
+        throw;
     }
-    collectSamples(frame.info.index);
-    checkTrips();
     unfinished_ = false;
     lastEvents_ = events;
     return true;
+}
+
+void Executor::abandonFrame() {
+    unfinished_ = false;
+    clock_.reset(); // it may stand in the middle of a step
 }
 
 bool Executor::runPass(int index, const FrameScene& frame) {
@@ -115,8 +138,7 @@ void Executor::swapHistories(const PlanPass& pass) {
 void Executor::runStep(int index, const FrameScene& frame) {
     const PlanStep& step = plan().steps.at(static_cast<size_t>(index));
     const PlanPass& pass = plan().passes.at(static_cast<size_t>(step.pass));
-    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, static_cast<GLuint>(index), -1,
-                     labels_[static_cast<size_t>(index)].c_str());
+    const DebugGroup group(index, labels_[static_cast<size_t>(index)]);
     if (options.timing) clock_->begin(static_cast<std::uint32_t>(index));
     if (step.barrier != Barrier::None) glMemoryBarrier(barrierBits(step.barrier));
     for (const auto& [from, to] : step.copies) resources_.copy(from, to);
@@ -130,7 +152,6 @@ void Executor::runStep(int index, const FrameScene& frame) {
     guarded(pass.name, "step '" + step.step.name + "'", [&] { pass.instance->execute(step.step, commands); });
     restrictMips(step, bindings_[static_cast<size_t>(index)], false);
     if (options.timing) clock_->end();
-    glPopDebugGroup();
 }
 
 void Executor::clearOutputs(const PlanPass& pass) {

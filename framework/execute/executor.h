@@ -41,6 +41,8 @@ public:
     // Runs one frame. False: a pass overflowed (see report); compile with World::grown, adopt, and call
     // again with the same frame. What ran before the overflow and has kept its results does not run again.
     bool run(const FrameScene& frame, Causes events);
+    // After run() said false: the frame is given up. What did not run stays due.
+    void abandonFrame();
 
     [[nodiscard]] const FrameReport& report() const { return report_; }
     [[nodiscard]] FrameReport& report() { return report_; }

@@ -69,6 +69,7 @@ void Executor::keepStates(const Plan& next, const Programs& programs, const Stat
             state.changed = last.changed;
         }
     }
+    std::erase_if(report_.values, [&](const auto& item) { return !kept.contains(item.first); });
     states_ = std::move(states);
     kept_ = std::move(kept);
 }

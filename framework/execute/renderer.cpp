@@ -224,6 +224,28 @@ FrameInfo Renderer::frameInfo() const {
 
 // ---- frames
 
+// Until no pass overflows; returns how often the plan was compiled anew.
+int Renderer::runFrame(const FrameScene& frame, Causes events) {
+    int recompiled = 0;
+    try {
+        while (!executor_->run(frame, events)) {
+            const auto needed = executor_->report().overflows;
+            const auto& [port, elements] = *needed.begin();
+            if (++recompiled > maxRecompilations)
+                throw InputError(
+                    fmt::format("{} overflows after growing {} times; it now asks for {} elements", port,
+                                maxRecompilations, elements));
+            for (const auto& [grownPort, count] : needed)
+                grown_[grownPort] = std::max(grown_[grownPort], count);
+            compileGraph(graph_);
+        }
+    } catch (...) {
+        executor_->abandonFrame();
+        throw;
+    }
+    return recompiled;
+}
+
 const FrameRecord& Renderer::frame() {
     const auto start = Clock::now();
     takeTime();
@@ -235,17 +257,8 @@ const FrameRecord& Renderer::frame() {
                               jumped_,           options_.size,          lights_};
     const Causes events = lastConditions_ ? eventsBetween(*lastConditions_, now, facts_) : Causes::All;
 
-    int recompiled = 0;
-    while (!executor_->run(frame, events)) {
-        const auto needed = executor_->report().overflows;
-        const auto& [port, elements] = *needed.begin();
-        if (++recompiled > maxRecompilations)
-            throw InputError(fmt::format("{} overflows after growing {} times; it now asks for {} elements",
-                                         port, maxRecompilations, elements));
-        for (const auto& [grownPort, count] : needed) grown_[grownPort] = std::max(grown_[grownPort], count);
-        compileGraph(graph_);
-    }
-    if (options_.timing) gl::finish();
+    const int recompiled = runFrame(frame, events);
+    if (options_.timing || options_.finishFrames) gl::finish();
 
     record_ = {index_,    millisecondsSince(start), events, executor_->samples(), executor_->report().values,
                recompiled};

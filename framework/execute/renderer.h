@@ -21,6 +21,7 @@ struct RenderOptions {
     bool keepAll = false;
     bool shareMemory = true;
     bool timing = false;           // times every step; waits for the GPU around each where the clock needs it
+    bool finishFrames = false;     // waits for the GPU at the end of each frame, so that its time is true
     bool checkFinite = false;      // an Error (MeasureFailed) names the first bad value of any output
     std::vector<PortRef> previews; // ports to make and keep readable besides the graph's outputs
     std::function<void(const std::string& what, double fraction)> progress; // of long work in one step
@@ -29,7 +30,7 @@ struct RenderOptions {
 // What one frame did.
 struct FrameRecord {
     std::uint32_t index = 0;
-    double ms = 0; // wall clock; with timing on, until the GPU was done
+    double ms = 0; // wall clock; until the GPU was done with timing or finishFrames on
     Causes events = Causes::None;
     std::vector<StepSample> samples;                             // with timing on
     std::map<std::string, std::map<std::string, double>> values; // what passes report: pass -> key -> value
@@ -86,6 +87,7 @@ public:
 
 private:
     void compileGraph(const Graph& graph);
+    int runFrame(const FrameScene& frame, Causes events);
     void takeTime();
     void takeGeometry();
     [[nodiscard]] FrameInfo frameInfo() const;

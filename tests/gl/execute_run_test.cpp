@@ -204,6 +204,35 @@ TEST_F(RunTest, AnUpdateInPlaceLeavesTheOtherReaderItsInput) {
     EXPECT_THAT(renderer->read({"add", "result"}).values, Each(4.0f));
 }
 
+// ---- failures
+
+TEST_F(RunTest, AFrameThatFailsIsMadeUpForByTheNext) {
+    bool fails = false;
+    addType(
+        "Fragile", {"in signal", "out result"},
+        [](const FunctionPass&, const World& world, const Inputs&) {
+            Declaration declaration;
+            declaration.outputs = {imageOf(world, "result")};
+            declaration.steps = {stepOf("add", {"add.comp"}, {read("signal"), write("result")})};
+            return declaration;
+        },
+        [this, &fails](FunctionPass& pass, const Step&, Commands& commands) {
+            if (fails) throw std::runtime_error("not today");
+            count(pass, commands);
+        });
+    const auto renderer = rendererOf(
+        graphOf({"a: Fill = 1", "fragile: Fragile = 1"}, {"a.result > fragile.signal"}, {"fragile.result"}));
+    renderer->frame();
+    renderer->set("a.value=5");
+    fails = true;
+    EXPECT_THROW(renderer->frame(), InputError);
+    fails = false;
+    renderer->frame();
+    EXPECT_THAT(renderer->read({"fragile", "result"}).values, Each(6.0f));
+    EXPECT_EQ(causes_["fragile"], Causes::Properties);
+    EXPECT_EQ(runs_["a"], 2);
+}
+
 // ---- reload
 
 TEST_F(RunTest, AChangedShaderIsLoadedAgainAndABadOneRefused) {
