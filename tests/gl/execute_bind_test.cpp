@@ -348,6 +348,34 @@ TEST_F(BindTest, APortThatIsNoUseOfTheStepIsNamed) {
                 HasSubstr("pass 'reach', step 'work': port 'signal' is not among the step's uses"));
 }
 
+#ifdef KESTREL_DEBUG
+TEST_F(BindTest, ALoopNestThatIsTooLongIsNamedInADebugBuild) {
+    addCompute(
+        "Long", {"out result"},
+        R"(#include "lib/trips.glsl"
+                  layout(r32f) uniform writeonly image2D result;
+                  uniform int trips_wanted;
+                  void main() {
+                      float sum = 0.0;
+                      TRIPS_BEGIN;
+                      for (int i = 0; i < trips_wanted; ++i) { TRIP; sum += 1.0; }
+                      TRIPS_END;
+                      imageStore(result, ivec2(gl_GlobalInvocationID.xy), vec4(sum));
+                  })",
+        {write("result")},
+        [](Declaration& declaration, const World& world) {
+            declaration.outputs = {imageOf(world, "result")};
+        },
+        [](FunctionPass& pass, const Step&, Commands& commands) {
+            commands.set("trips_wanted", static_cast<int>(pass.value));
+            commands.dispatch(1);
+        });
+    EXPECT_EQ(messageOfFrame(graphOf({"long: Long = 64000"}, {}, {"long.result"})), "");
+    EXPECT_THAT(messageOfFrame(graphOf({"long: Long = 70000"}, {}, {"long.result"})),
+                AllOf(HasSubstr("pass 'long', step 'work'"), HasSubstr("65000 trips")));
+}
+#endif
+
 // ---- values that no output should hold
 
 TEST_F(BindTest, TheFirstBadValueIsNamed) {
