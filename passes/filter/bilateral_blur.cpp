@@ -9,7 +9,7 @@ PassType BilateralBlur::type() {
         .input("signal", PortKind::Texture, "What is blurred")
         .input("view_depth", PortKind::Texture, "Distance along the view axis; 0 where nothing is")
         .output("result", PortKind::Texture, "The blurred signal; as it was where nothing is")
-        .internal("half", PortKind::Texture, "Blurred along x")
+        .internal("blurred_x", PortKind::Texture, "Blurred along x")
         .number("radius", &BilateralBlur::radius, 0, 32, "pixels",
                 "Taps to each side; the Gaussian's deviation is (radius + 1) / 2")
         .number("sharpness", &BilateralBlur::sharpness, 0, 1e6, "",
@@ -41,7 +41,7 @@ Declaration BilateralBlur::declare(const World&, const Inputs& inputs, const Dem
         return declaration;
     }
     declaration.outputs.push_back(result);
-    declaration.outputs.push_back({.port = "half", .desc = signal.desc});
+    declaration.outputs.push_back({.port = "blurred_x", .desc = signal.desc});
     const auto direction = [&](const char* name, const char* from, const char* to, const char* axis) {
         Step step{
             .name = name,
@@ -60,8 +60,8 @@ Declaration BilateralBlur::declare(const World&, const Inputs& inputs, const Dem
         if (slope) step.defines.emplace("SLOPE", "1");
         declaration.steps.push_back(std::move(step));
     };
-    direction("horizontal", "signal", "half", "ivec2(1, 0)");
-    direction("vertical", "half", "result", "ivec2(0, 1)");
+    direction("horizontal", "signal", "blurred_x", "ivec2(1, 0)");
+    direction("vertical", "blurred_x", "result", "ivec2(0, 1)");
     declaration.depends = Causes::Properties;
     return declaration;
 }

@@ -1,0 +1,138 @@
+// Every program that a shipped pass can choose compiles: every combination of its choices and flags, over
+// scenes that differ in what materials need. By glslang, so no context is asked for.
+#include "core/files.h"
+#include "draw/material_defines.h"
+#include "graph/plan.h"
+#include "plugin/loader.h"
+#include "shader/validate.h"
+#include <gtest/gtest.h>
+#include <set>
+
+namespace kestrel {
+namespace {
+
+const Registry& shipped() {
+    static const Registry instance = [] {
+        Registry registry;
+        loadPlugins(registry, pluginFolders());
+        return registry;
+    }();
+    return instance;
+}
+
+// One setting per value of a property; numbers at their ends, where the ends are programs of their own.
+std::vector<std::string> settingsOf(const GraphPass& pass, const PropertyInfo& property) {
+    const std::string name = pass.name + "." + property.name + "=";
+    std::vector<std::string> settings;
+    if (property.kind == PropertyKind::Choice)
+        for (const std::string& choice : property.choices) settings.push_back(name + choice);
+    if (property.kind == PropertyKind::Bool) settings = {name + "true", name + "false"};
+    return settings;
+}
+
+// All combinations of the settings of one pass.
+std::vector<std::vector<std::string>> combinations(const GraphPass& pass) {
+    std::vector<std::vector<std::string>> all = {{}};
+    for (const PropertyInfo& property : shipped().find(pass.type)->properties) {
+        const auto settings = settingsOf(pass, property);
+        if (settings.empty()) continue;
+        std::vector<std::vector<std::string>> more;
+        for (const auto& before : all)
+            for (const std::string& setting : settings) {
+                more.push_back(before);
+                more.back().push_back(setting);
+            }
+        all = std::move(more);
+    }
+    return all;
+}
+
+// Facts that differ in what shaders contain.
+std::vector<SceneFacts> worlds() {
+    SceneFacts plain;
+    plain.triangles = 100;
+    plain.vertices = 300;
+    plain.materials = 1;
+    plain.bounds.add(glm::vec3(-1));
+    plain.bounds.add(glm::vec3(1));
+    plain.sphere = {glm::vec3(0), 1.8f};
+    SceneFacts rich = plain;
+    rich.hasMasked = rich.hasTextures = rich.hasNormalMaps = rich.hasVertexColours = rich.hasEmission = true;
+    rich.maskedTriangles = 10;
+    rich.images = 3;
+    rich.colourTextureArrays = 2;
+    rich.dataTextureArrays = 1;
+    rich.geometryMoves = rich.geometryDeforms = true;
+    return {plain, rich, SceneFacts{}};
+}
+
+class Programs {
+public:
+    Programs()
+        : library_(folders()) {}
+    // Validates the programs of a plan that were not seen before.
+    void validatePlan(const Plan& plan, const std::string& what) {
+        for (const ProgramRequest& request : plan.programs) {
+            const ComposedProgram program = compose(request, library_);
+            if (!seen_.insert(program.key).second) continue;
+            for (const Problem& problem : validate(program)) ADD_FAILURE() << what << "\n" << problem.text();
+        }
+    }
+    [[nodiscard]] size_t count() const { return seen_.size(); }
+
+private:
+    static std::vector<std::filesystem::path> folders() {
+        std::vector<std::filesystem::path> all = {shareFolder() / "shaders"};
+        all.insert(all.end(), shipped().shaderFolders.begin(), shipped().shaderFolders.end());
+        return all;
+    }
+    ShaderLibrary library_;
+    std::set<std::uint64_t> seen_;
+};
+
+World worldOf(const SceneFacts& facts) {
+    World world;
+    world.facts = facts;
+    world.capabilities.extensions = {"GL_ARB_fragment_shader_interlock", "GL_EXT_shader_framebuffer_fetch"};
+    world.capabilities.maxTextureBufferTexels = std::int64_t{1} << 27;
+    return world;
+}
+
+TEST(ShippedShaders, CompileUnderEveryCombinationOfDefines) {
+    Programs programs;
+    for (const auto& entry : std::filesystem::directory_iterator(shareFolder() / "graphs")) {
+        if (entry.path().extension() != ".json" || entry.path().stem() == "schema") continue;
+        const Graph graph = loadGraph(entry.path());
+        if (!validate(graph, shipped()).empty()) continue; // a part that is not built in
+        for (const GraphPass& pass : graph.passes)
+            for (const auto& settings : combinations(pass))
+                for (const SceneFacts& facts : worlds())
+                    for (const bool keepAll : {false, true}) {
+                        Graph changed = graph;
+                        std::string what = entry.path().stem().string();
+                        for (const std::string& setting : settings) {
+                            applySetting(changed, shipped(), setting);
+                            what += " " + setting;
+                        }
+                        const Plan plan =
+                            compile(changed, shipped(), makePasses(changed, shipped()), worldOf(facts),
+                                    {.keepAll = keepAll, .shareMemory = true, .previews = {}});
+                        programs.validatePlan(plan, what);
+                    }
+    }
+    RecordProperty("programs", static_cast<int>(programs.count()));
+    EXPECT_GT(programs.count(), 40u);
+}
+
+TEST(ShippedGraphs, AreValidAndCanonical) {
+    for (const auto& entry : std::filesystem::directory_iterator(shareFolder() / "graphs")) {
+        if (entry.path().extension() != ".json" || entry.path().stem() == "schema") continue;
+        const Graph graph = loadGraph(entry.path());
+        EXPECT_EQ(saveGraph(graph), readText(entry.path())) << entry.path();
+        if (shipped().find("ReferenceAmbientOcclusion") == nullptr) continue;
+        for (const Problem& problem : validate(graph, shipped())) ADD_FAILURE() << problem.text();
+    }
+}
+
+} // namespace
+} // namespace kestrel
