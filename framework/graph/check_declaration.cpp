@@ -65,6 +65,9 @@ private:
             note(output.port, "is an input and cannot be declared as an output");
             return;
         }
+        const int meanings = (output.same.empty() ? 0 : 1) + (output.updates.empty() ? 0 : 1) +
+                             (output.constant ? 1 : 0) + (output.clear ? 1 : 0);
+        if (meanings > 1) note(output.port, "can be only one of same, updates, constant and clear");
         if (!output.same.empty()) checkLikeness(output, *info, output.same);
         if (!output.updates.empty()) checkLikeness(output, *info, output.updates);
         const ResourceKind kind = output.desc.kind;

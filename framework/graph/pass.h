@@ -141,7 +141,9 @@ struct Declaration {
     // For which causes the results change, besides those of the inputs that are read. Frame: runs every
     // frame.
     Causes depends = Causes::None;
-    bool always = false; // runs every frame though nothing changed (keeps a history)
+    // Runs every frame though nothing changed (keeps a history). What it makes may be new in every frame, so
+    // its readers run too.
+    bool always = false;
 };
 
 // A technique. One object per pass of a graph; its properties are members, bound by the table of its type.
@@ -152,8 +154,9 @@ public:
     Pass(const Pass&) = delete;
     Pass& operator=(const Pass&) = delete;
 
-    // Pure: no GL, no state. Called twice a compilation: forward with every demand, then with the real one.
-    // With less demand it may have fewer steps, defines and outputs; what an output means never changes.
+    // Pure: no GL, no state. Called several times a compilation: first with every demand, then with the real
+    // one until inputs and demand have settled. With less demand it may have fewer steps, defines and
+    // outputs; what an output means never changes, and what is asked for must be declared.
     [[nodiscard]] virtual Declaration declare(const World& world, const Inputs& inputs,
                                               const Demand& demand) const = 0;
 

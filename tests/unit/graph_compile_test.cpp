@@ -373,7 +373,7 @@ TEST(Compile, ExtentOfAViewCountsGuardBandAndDivisor) {
     EXPECT_EQ(world.extentOf(view), (Extent{30, 17, 1})); // (101 + 16) / 4, (51 + 16) / 4, rounded up
 }
 
-TEST(Compile, TwiceTheSameAndFast) {
+TEST(Compile, ALongChainTwiceTheSame) {
     std::vector<std::pair<std::string, std::string>> passes = {{"s", "Source"}}, edges;
     for (int i = 0; i < 60; ++i) {
         passes.emplace_back("f" + std::to_string(i), "Filter");

@@ -124,6 +124,10 @@ TEST(Declaration, OutputsAreChecked) {
         "allows 134217728");
     EXPECT_EQ(made(output("module", Desc::module(0))),
               "g.json:2:1: pass 'p' (P), 'module': no module file is declared for it");
+    Output both = output("scratch");
+    both.clear = both.constant = glm::vec4(0);
+    EXPECT_EQ(made(both),
+              "g.json:2:1: pass 'p' (P), 'scratch': can be only one of same, updates, constant and clear");
     Output like = output("scratch");
     like.same = "y";
     EXPECT_EQ(made(like),

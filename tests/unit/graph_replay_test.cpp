@@ -195,6 +195,10 @@ public:
         return through(graph_.passes.at(pass).feeds.at("m").pass, name.substr(2));
     }
 
+    // Which ports somebody asks for decides what a declaration reads (see declareRandom).
+    std::set<std::string> tracerDemanded;
+    std::set<PortRef> demanded;
+
 private:
     // The module's value: all that a consumer reads through it.
     [[nodiscard]] Token moduleToken(const std::string& provider) const {
@@ -215,11 +219,9 @@ private:
         for (const std::string& port : textureInputs)
             if (how.fed(port)) all += at(name, port);
         if (how.fed("m")) all += moduleToken(how.feeds.at("m").pass);
-        scratchOfLast_ = values_[{name, "scratch"}];
-        reads_[name] = all;
-        const bool scratch = how.twoSteps || (how.providesModule && tracerDemanded_.contains(name));
-        if (scratch) all += scratchOfLast_;
-        if (how.history && demanded_.contains({name, "out0"})) all += previousAt(name, "out0");
+        const bool scratch = how.twoSteps || (how.providesModule && tracerDemanded.contains(name));
+        if (scratch) all += values_[{name, "scratch"}];
+        if (how.history && demanded.contains({name, "out0"})) all += previousAt(name, "out0");
         values_[{name, "out0"}] = mix(all, hashOf(name + "last" + "out0"));
         values_[{name, "out1"}] = how.sameOut1 && how.fed("in0") ? at(name, "in0")
                                   : how.constantOut1             ? Token{3}
@@ -228,16 +230,8 @@ private:
             values_[{name, "updated"}] = mix(all + at(name, "base"), hashOf(name + "last" + "updated"));
     }
 
-public:
-    // Which ports somebody asks for decides what a declaration reads (see declareRandom).
-    std::set<std::string> tracerDemanded_;
-    std::set<PortRef> demanded_;
-
-private:
     const RandomGraph& graph_;
     std::map<PortRef, Token> values_, previous_;
-    std::map<std::string, Token> reads_;
-    Token scratchOfLast_ = 0;
 };
 
 // Executes a plan as the executor does: barrier, copies, clears, step; and checks every access.
@@ -346,7 +340,6 @@ private:
             ++mistakes;
             ADD_FAILURE() << "a store overtakes an access of " << plan_.objects[at].label;
         }
-        pendingWrites_.emplace_back(at, incoherent);
         if (incoherent) lastWrite_[at] = ++clock_;
         if (access != Access::Copy && access != Access::Host) lastAccess_[at] = ++clock_;
     }
@@ -359,7 +352,6 @@ private:
     std::array<std::uint64_t, 8> barrierAt_{};
     std::uint64_t clock_ = 0;
     std::vector<bool> swapped_; // history: the second object is the present one
-    std::vector<std::pair<size_t, bool>> pendingWrites_;
 };
 
 void replay(std::uint32_t seed, bool share, bool keepAll) {
@@ -376,8 +368,8 @@ void replay(std::uint32_t seed, bool share, bool keepAll) {
 
     Interpreter expected(graph);
     for (const PlanPass& pass : plan.passes) {
-        if (pass.descs.contains("tracer")) expected.tracerDemanded_.insert(pass.name);
-        if (pass.descs.contains("out0")) expected.demanded_.insert({pass.name, "out0"});
+        if (pass.descs.contains("tracer")) expected.tracerDemanded.insert(pass.name);
+        if (pass.descs.contains("out0")) expected.demanded.insert({pass.name, "out0"});
     }
     Device device(plan, graph, expected);
     std::mt19937 random(seed + 1);
