@@ -4,6 +4,7 @@
 #include "execute/commands.h"
 #include "grid.h"
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <fmt/format.h>
 
@@ -61,6 +62,8 @@ Step rotateStep(const Maps& maps, const Desc& base, const Capabilities& capabili
                        {.port = "maps", .access = Access::Storage, .write = true}},
               .modules = {},
               .group = "generation"};
+    step.defines["RESOLUTION_BITS"] =
+        std::to_string(std::countr_zero(static_cast<unsigned>(maps.resolution)));
     if (!fitsTexels(base, capabilities)) {
         step.defines.emplace("BASE_STORAGE", "1");
         step.uses.front().access = Access::Storage;

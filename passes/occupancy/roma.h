@@ -19,8 +19,8 @@ public:
 
     int angular = 4;
     int iterations = 8;
-    float offset = 0.75f;
-    float skip = 1;
+    float offset = 0.5f;
+    float skip = 2;
     bool resample = true;
     bool countExhausted = false;
 
