@@ -29,6 +29,18 @@ constexpr Target targets[] = {
     {"coverage", "OUT_COVERAGE", Format::R8, "1 where there is geometry, else 0"},
 };
 
+// Colour attachments that OpenGL 4.6 guarantees; further targets take a second step over the finished depth.
+constexpr size_t maxTargets = 8;
+
+Step rasterStep(std::string name, const SceneFacts& facts) {
+    return {.name = std::move(name),
+            .shaders = {"gbuffer/gbuffer.vert", "gbuffer/gbuffer.frag"},
+            .defines = materialDefines(facts),
+            .uses = {},
+            .modules = {},
+            .group = {}};
+}
+
 bool isConstantZero(const Target& target, const SceneFacts& facts) {
     const std::string_view port = target.port;
     return facts.triangles == 0 || (port == "emission" && !facts.hasEmission);
@@ -54,12 +66,7 @@ PassType GBuffer::type() {
 Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& demand) const {
     Declaration declaration;
     const Extent extent = world.extentOf(view());
-    Step step{.name = "rasterize",
-              .shaders = {"gbuffer/gbuffer.vert", "gbuffer/gbuffer.frag"},
-              .defines = materialDefines(world.facts),
-              .uses = {},
-              .modules = {},
-              .group = {}};
+    std::vector<Step> steps = {rasterStep("rasterize", world.facts)};
     const bool empty = world.facts.triangles == 0;
     bool material = false;
     for (const Target& target : targets) {
@@ -69,8 +76,10 @@ Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& de
             output.constant = glm::vec4(0);
         } else {
             output.clear = glm::vec4(0);
-            step.defines[target.define] = "1";
-            step.uses.push_back({.port = target.port, .access = Access::Attachment, .write = true});
+            if (steps.back().uses.size() == maxTargets)
+                steps.push_back(rasterStep("rasterize_rest", world.facts));
+            steps.back().defines.emplace(target.define, "1");
+            steps.back().uses.push_back({.port = target.port, .access = Access::Attachment, .write = true});
             material |= std::string_view(target.define) == "OUT_ALBEDO" ||
                         std::string_view(target.define) == "OUT_MATERIAL" ||
                         std::string_view(target.define) == "OUT_EMISSION";
@@ -87,8 +96,11 @@ Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& de
         declaration.leftOut.push_back({"rasterize", "the scene has no triangle"});
         return declaration;
     }
-    step.uses.push_back({.port = "depth", .access = Access::Attachment, .write = true});
-    declaration.steps.push_back(std::move(step));
+    for (Step& step : steps) {
+        step.uses.push_back({.port = "depth", .access = Access::Attachment, .write = true});
+        if (demand.reads("motion") && world.facts.geometryMoves) step.defines.emplace("MOVES", "1");
+        declaration.steps.push_back(std::move(step));
+    }
 
     if (!world.facts.hasMasked)
         declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
@@ -105,13 +117,17 @@ Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& de
     // Motion of a camera or an object that has just stopped is still that of the last frame: runs one frame
     // longer, which the executor does for readers of last frame's transforms.
     if (jitter) declaration.depends |= Causes::Frame;
-    if (demand.reads("motion") && world.facts.geometryMoves) declaration.steps.back().defines["MOVES"] = "1";
     return declaration;
 }
 
-void GBuffer::execute(const Step&, Commands& commands) {
-    commands.drawScene({}, {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided, TriangleClass::Masked,
-                            TriangleClass::MaskedDoubleSided});
+void GBuffer::execute(const Step& step, Commands& commands) {
+    DrawState state;
+    if (step.name == "rasterize_rest") {
+        state.depth = Compare::Equal;
+        state.depthWrite = false;
+    }
+    commands.drawScene(state, {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided, TriangleClass::Masked,
+                               TriangleClass::MaskedDoubleSided});
 }
 
 } // namespace kestrel

@@ -4,6 +4,9 @@
 
 layout(std140) uniform DepthView { ViewData depthView; };
 
+// Two steps with different targets must meet the same depths.
+invariant gl_Position;
+
 out vec3 v_position;
 out vec3 v_normal;
 out vec2 v_tex_coord;
