@@ -1,9 +1,17 @@
 # Compiler flags. Every target of Kestrel links kestrel_options; nothing sets flags elsewhere.
 add_library(kestrel_options INTERFACE)
 target_compile_options(kestrel_options INTERFACE
-    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Werror
+    -Wall -Wextra -Wpedantic $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> $<$<COMPILE_LANGUAGE:CXX>:-Woverloaded-virtual> -Werror
     # The CPU oracles must round as the shaders do: no fused multiply-add behind our back.
     -ffp-contract=off)
+
+# Two files in one group: a local name that hides the other file's is no mistake, and a class with members of
+# unnamed-namespace types is still seen by its own file alone.
+if(KESTREL_UNITY)
+    target_compile_options(kestrel_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+else()
+    target_compile_options(kestrel_options INTERFACE -Wshadow)
+endif()
 
 if(KESTREL_CONFIG STREQUAL "release")
     target_compile_options(kestrel_options INTERFACE -O2)

@@ -16,12 +16,6 @@ std::string glString(GLenum name) {
     return text == nullptr ? "" : text;
 }
 
-int glInteger(GLenum name) {
-    GLint value = 0;
-    glGetIntegerv(name, &value);
-    return value;
-}
-
 std::set<std::string> listedExtensions() {
     std::set<std::string> listed;
     const int count = glInteger(GL_NUM_EXTENSIONS);

@@ -101,12 +101,6 @@ struct Units {
     }
 };
 
-int limitOf(GLenum name) {
-    GLint value = 0;
-    glGetIntegerv(name, &value);
-    return value;
-}
-
 // One active resource of a program interface.
 struct Resource {
     std::string name;
@@ -212,12 +206,12 @@ void Program::readResources(const ComposedProgram& composed, const Capabilities&
 
     std::vector<Problem> problems;
     samplers.require(composed.name, capabilities.maxTextureUnits,
-                     limitOf(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS), problems);
-    images.require(composed.name, capabilities.maxComputeImages, limitOf(GL_MAX_IMAGE_UNITS), problems);
+                     glInteger(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS), problems);
+    images.require(composed.name, capabilities.maxComputeImages, glInteger(GL_MAX_IMAGE_UNITS), problems);
     uniformBlocks.require(composed.name, capabilities.maxUniformBlocks,
-                          limitOf(GL_MAX_UNIFORM_BUFFER_BINDINGS), problems);
+                          glInteger(GL_MAX_UNIFORM_BUFFER_BINDINGS), problems);
     storageBlocks.require(composed.name, capabilities.maxStorageBlocks,
-                          limitOf(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS), problems);
+                          glInteger(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS), problems);
     if (!problems.empty()) throw InputError(std::move(problems));
 }
 

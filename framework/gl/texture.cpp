@@ -39,12 +39,6 @@ GLenum targetOf(ResourceKind kind) {
 
 bool hasLayers(ResourceKind kind) { return kind != ResourceKind::Texture2D; }
 
-int limitOf(GLenum name) {
-    GLint value = 0;
-    glGetIntegerv(name, &value);
-    return value;
-}
-
 void requireSize(const Desc& desc, const std::string& label) {
     const auto require = [&](std::uint32_t value, int limit, const char* what) {
         if (value == 0) KESTREL_CHECK(!"a texture without texels");
@@ -52,14 +46,14 @@ void requireSize(const Desc& desc, const std::string& label) {
             throw MachineError(fmt::format("texture '{}' needs {} {}, the device has at most {}", label,
                                            value, what, limit));
     };
-    const int side = limitOf(desc.kind == ResourceKind::Texture3D     ? GL_MAX_3D_TEXTURE_SIZE
+    const int side = glInteger(desc.kind == ResourceKind::Texture3D     ? GL_MAX_3D_TEXTURE_SIZE
                              : desc.kind == ResourceKind::TextureCube ? GL_MAX_CUBE_MAP_TEXTURE_SIZE
                                                                       : GL_MAX_TEXTURE_SIZE);
     require(desc.extent.width, side, "texels in width");
     require(desc.extent.height, side, "texels in height");
     if (desc.kind == ResourceKind::Texture3D) require(desc.extent.depth, side, "texels in depth");
     if (desc.kind == ResourceKind::Texture2DArray)
-        require(desc.extent.depth, limitOf(GL_MAX_ARRAY_TEXTURE_LAYERS), "layers");
+        require(desc.extent.depth, glInteger(GL_MAX_ARRAY_TEXTURE_LAYERS), "layers");
 }
 
 // A value of the format, as glClearTexImage takes it.

@@ -18,7 +18,7 @@ std::string programName(const ProgramRequest& program) {
 }
 
 // "16 384 bytes" is hard to read and "16 KiB" hard to add up: both.
-std::string bytesText(std::uint64_t bytes) {
+std::string exactBytesText(std::uint64_t bytes) {
     return fmt::format("{} bytes ({:.2f} MiB)", bytes, static_cast<double>(bytes) / (1 << 20));
 }
 
@@ -95,8 +95,8 @@ std::string planText(const Plan& plan) {
                 text += fmt::format("    {}: {}\n", resource.port.text(), resourceUseText(resource));
     }
     text +=
-        fmt::format("  transient {}, without sharing {}; persistent {}\n", bytesText(plan.memory.transient),
-                    bytesText(plan.memory.unshared), bytesText(plan.memory.persistent));
+        fmt::format("  transient {}, without sharing {}; persistent {}\n", exactBytesText(plan.memory.transient),
+                    exactBytesText(plan.memory.unshared), exactBytesText(plan.memory.persistent));
 
     text += "Left out:\n";
     if (plan.leftOut.empty()) text += "  nothing\n";

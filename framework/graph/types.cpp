@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 
 namespace kestrel {
-namespace {
-
-// "4 MiB", "1.5 KiB", "12 bytes": exact where the number is a whole multiple.
 std::string bytesText(std::uint64_t bytes) {
     constexpr std::array units = {"bytes", "KiB", "MiB", "GiB"};
     size_t unit = 0;
@@ -17,8 +14,6 @@ std::string bytesText(std::uint64_t bytes) {
     }
     return fmt::format("{:.4g} {}", amount, units[unit]);
 }
-
-} // namespace
 
 std::string_view portKindName(PortKind kind) {
     constexpr std::array<std::string_view, 6> names = {"texture", "buffer", "tracer",

@@ -95,6 +95,10 @@ inline constexpr Bits BearsSnap =
     1 << 3; // the direction may be replaced by a nearby one (defines TAKES_SNAP)
 inline constexpr Bits AllHits = 1 << 4;
 } // namespace takes
+// What a radiance module needs of the hits that it is asked about, in Desc::gives of its port.
+namespace needs {
+inline constexpr Bits Surface = 1 << 8; // normal and material: consumers take takes::Surface of their tracer
+} // namespace needs
 
 // Describes what stands behind a port.
 struct Desc {
@@ -115,6 +119,9 @@ struct Desc {
     // Bytes of all mips and layers.
     [[nodiscard]] std::uint64_t totalBytes() const;
 };
+
+// "4 MiB", "1.5 KiB", "12 bytes": exact where the number is a whole multiple.
+std::string bytesText(std::uint64_t bytes);
 
 // "rgba16f 640x360", "buffer 4 MiB"…: for messages and reports.
 std::string describe(const Desc& desc);

@@ -68,15 +68,6 @@ std::string statsJson(const RunStats& stats) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string bytesText(std::uint64_t bytes) {
-    static constexpr const char* units[] = {"KiB", "MiB", "GiB"};
-    if (bytes < 1024) return fmt::format("{} B", bytes);
-    double value = static_cast<double>(bytes) / 1024;
-    size_t unit = 0;
-    for (; value >= 1024 && unit < 2; ++unit) value /= 1024;
-    return fmt::format("{:.1f} {}", value, units[unit]);
-}
-
 std::string memoryText(const MemoryReport& memory) {
     return fmt::format("{} shared by lifetime (unshared {}), {} that stays", bytesText(memory.transient),
                        bytesText(memory.unshared), bytesText(memory.persistent));

@@ -29,7 +29,6 @@ RunStats gatherStats(Renderer& renderer, const Profile& profile, const std::stri
 std::string statsJson(const RunStats& stats);
 
 // For people: "1.5 MiB", and what a plan needs, in one line.
-std::string bytesText(std::uint64_t bytes);
 std::string memoryText(const MemoryReport& memory);
 
 } // namespace kestrel

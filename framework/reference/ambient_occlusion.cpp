@@ -1,11 +1,9 @@
 #include "reference/ambient_occlusion.h"
 #include "core/error.h"
-#include "shared/random.h"
+#include "reference/sampling.h"
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
 
 namespace kestrel {
 namespace {
@@ -35,37 +33,6 @@ void checkInputs(const OcclusionInputs& inputs) {
     if (!inputs.faceNormal.empty()) check(inputs.faceNormal, "face normal");
     if (!problems.empty()) throw InputError(std::move(problems));
 }
-
-// The unit disk with equal areas and little distortion (Shirley and Chiu, "A Low Distortion Map Between Disk
-// and Square", 1997).
-glm::vec2 concentricDisk(const glm::vec2& u) {
-    const glm::vec2 s = 2.0f * u - 1.0f;
-    if (s.x == 0 && s.y == 0) return {0, 0};
-    constexpr float quarter = std::numbers::pi_v<float> / 4;
-    const bool wide = std::abs(s.x) > std::abs(s.y);
-    const float radius = wide ? s.x : s.y;
-    const float angle = wide ? quarter * (s.y / s.x) : 2 * quarter - quarter * (s.x / s.y);
-    return radius * glm::vec2(std::cos(angle), std::sin(angle));
-}
-
-// Two unit vectors perpendicular to the unit vector n (Duff et al., "Building an Orthonormal Basis,
-// Revisited", 2017).
-void basisOf(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1 / (sign + n.z), b = n.x * n.y * a;
-    tangent = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
-    bitangent = {b, sign + n.y * n.y * a, -n.y};
-}
-
-// Point `index` of the Owen-scrambled Sobol sequence of `seed`: shared::scrambledSobol without the shuffled
-// order, which only a running sequence needs.
-glm::vec2 sobolPoint(std::uint32_t index, std::uint32_t seed) {
-    const std::uint32_t x = shared::reverseBits32(shared::laineKarras(index, shared::hashCombine(seed, 1)));
-    const std::uint32_t y = shared::owenScramble(shared::sobol1(index), shared::hashCombine(seed, 2));
-    return {shared::unitFloat(x), shared::unitFloat(y)};
-}
-
-constexpr int packet = 16; // rays that the tracer takes at once
 
 class OcclusionPass {
 public:
@@ -109,18 +76,16 @@ private:
         const glm::vec3 size = glm::abs(position);
         const float scale = std::max({size.x, size.y, size.z, radius_});
         const glm::vec3 origin = position + face * (settings_.relativeOffset * scale);
-        glm::vec3 tangent, bitangent;
-        basisOf(normal, tangent, bitangent);
+        const glm::mat3 basis = basisAround(normal);
         const auto dimension = shared::randomReference + static_cast<std::uint32_t>(half);
         const std::uint32_t seed = shared::pixelSeed(glm::uvec2(x, y), dimension, settings_.seed);
         // Samples whose indices are equal modulo `stride` share a stratum of the first dimension: packets of
         // rays that run alike. How many are blocked does not depend on the order.
-        const int stride = (half_ + packet - 1) / packet;
+        const int stride = (half_ + tracePacket - 1) / tracePacket;
         for (int k = 0; k < stride; ++k) {
             for (int i = k; i < half_; i += stride) {
-                const glm::vec2 disk = concentricDisk(sobolPoint(static_cast<std::uint32_t>(i), seed));
-                const float up = std::sqrt(std::max(0.0f, 1 - glm::dot(disk, disk)));
-                const glm::vec3 direction = tangent * disk.x + bitangent * disk.y + normal * up;
+                const glm::vec3 direction =
+                    basis * cosineDirection(sobolPoint(static_cast<std::uint32_t>(i), seed));
                 if (glm::dot(direction, face) > 0)
                     rays.push_back({origin, direction, 0, settings_.maximumDistance});
             }

@@ -52,8 +52,6 @@ struct AllHitsContext {
     bool stopped;
 };
 
-constexpr int packet = 16;
-
 void setRay(RTCRay& to, const TraceRay& ray) {
     to.org_x = ray.origin.x;
     to.org_y = ray.origin.y;
@@ -86,7 +84,7 @@ void setRay(RTCRay16& to, int i, const TraceRay& ray) {
 
 // Fills a packet from rays[first] on; lanes without a ray are invalid and hold a copy of the first.
 void fillPacket(RTCRay16& to, int* valid, std::span<const TraceRay> rays, size_t first) {
-    for (int i = 0; i < packet; ++i) {
+    for (int i = 0; i < tracePacket; ++i) {
         const size_t k = first + static_cast<size_t>(i);
         valid[i] = k < rays.size() ? -1 : 0;
         setRay(to, i, rays[k < rays.size() ? k : first]);
@@ -220,14 +218,14 @@ void ReferenceTracer::closestHits(std::span<const TraceRay> rays, std::span<Trac
                                   bool coherent) const {
     KESTREL_CHECK_EQ(rays.size(), hits.size());
     alignas(64) RTCRayHit16 query;
-    alignas(64) int valid[packet];
-    for (size_t first = 0; first < rays.size(); first += packet) {
+    alignas(64) int valid[tracePacket];
+    for (size_t first = 0; first < rays.size(); first += tracePacket) {
         fillPacket(query.ray, valid, rays, first);
-        std::fill_n(query.hit.geomID, packet, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(query.hit.geomID, tracePacket, RTC_INVALID_GEOMETRY_ID);
         embree::Context context;
         embree::initContext(context);
         embree::intersect16(state_->handle.get(), context, valid, query, coherent);
-        for (size_t i = 0; i < packet && first + i < rays.size(); ++i) {
+        for (size_t i = 0; i < tracePacket && first + i < rays.size(); ++i) {
             hits[first + i] = state_->hitOf(query.hit.geomID[i], query.hit.primID[i], query.ray.tfar[i],
                                             query.hit.u[i], query.hit.v[i]);
         }
@@ -237,13 +235,13 @@ void ReferenceTracer::closestHits(std::span<const TraceRay> rays, std::span<Trac
 void ReferenceTracer::anyHits(std::span<const TraceRay> rays, std::span<std::uint8_t> hits) const {
     KESTREL_CHECK_EQ(rays.size(), hits.size());
     alignas(64) RTCRay16 query;
-    alignas(64) int valid[packet];
-    for (size_t first = 0; first < rays.size(); first += packet) {
+    alignas(64) int valid[tracePacket];
+    for (size_t first = 0; first < rays.size(); first += tracePacket) {
         fillPacket(query, valid, rays, first);
         embree::Context context;
         embree::initContext(context);
         embree::occluded16(state_->handle.get(), context, valid, query);
-        for (size_t i = 0; i < packet && first + i < rays.size(); ++i)
+        for (size_t i = 0; i < tracePacket && first + i < rays.size(); ++i)
             hits[first + i] = query.tfar[i] < 0 ? 1 : 0;
     }
 }

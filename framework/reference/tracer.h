@@ -10,6 +10,9 @@
 
 namespace kestrel {
 
+// Rays that batches are traced in packets of.
+inline constexpr int tracePacket = 16;
+
 // Traces the geometry that it was built from (in Embree's robust mode, both sides of every triangle). Points
 // of masked and blended materials whose base colour alpha is below the cutoff let rays pass. All queries may
 // be called from several threads at once.
@@ -26,8 +29,8 @@ public:
     // Hands every hit to `visit`, in no particular order, until that returns true.
     void allHits(const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit) const;
 
-    // Whole batches in packets of 16. `hits` is as long as `rays`; TraceHit::none where nothing was hit.
-    // `coherent` says that neighbours in the batch run alike (camera rays).
+    // Whole batches in packets of tracePacket. `hits` is as long as `rays`; TraceHit::none where nothing was
+    // hit. `coherent` says that neighbours in the batch run alike (camera rays).
     void closestHits(std::span<const TraceRay> rays, std::span<TraceHit> hits, bool coherent) const;
     // 1 where something was hit, else 0.
     void anyHits(std::span<const TraceRay> rays, std::span<std::uint8_t> hits) const;

@@ -132,28 +132,38 @@ void completePrimitives(Scene& scene) {
         }
 }
 
-// A camera to the front, the right and above that sees the whole bounding sphere.
+// A camera to the front, the right and above that sees the whole of the bounds, in square frames too.
 // `bounds` are those without rootTransform, below which the camera hangs like everything else.
 void addDefaultCamera(Scene& scene, const TimelineBounds& bounds) {
     constexpr double fov = 0.8;
-    const double radius = bounds.radius > 0 ? bounds.radius : 1;
-    // Wide frames are cut at top and bottom first; the sphere touches no edge of a frame at least as wide as
-    // high.
-    const double distance = 1.05 * radius / std::sin(0.5 * fov);
-    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.6, 0.45, 1.0));
-    const glm::dvec3 centre = bounds.centre(), eye = centre + distance * direction;
-    const glm::dmat4 view = glm::lookAt(eye, centre, glm::dvec3(0, 1, 0));
+    const glm::dvec3 centre = bounds.centre();
+    const glm::dvec3 away = glm::normalize(glm::dvec3(0.6, 0.45, 1.0));
+    const glm::dmat3 axes = glm::transpose(glm::dmat3(glm::lookAt(away, glm::dvec3(0), glm::dvec3(0, 1, 0))));
+    const double unit = bounds.radius > 0 ? bounds.radius : 1;
+    // How far the eye must stand off for each corner of the box, on the axes of the camera, to be in view.
+    double distance = 0.5 * unit, nearest = 0;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 corner((i & 1) != 0 ? bounds.max.x : bounds.min.x,
+                                (i & 2) != 0 ? bounds.max.y : bounds.min.y,
+                                (i & 4) != 0 ? bounds.max.z : bounds.min.z);
+        const glm::dvec3 seen = glm::transpose(axes) * (corner - centre);
+        nearest = std::max(nearest, seen.z);
+        distance =
+            std::max(distance, seen.z + std::max(std::abs(seen.x), std::abs(seen.y)) / std::tan(0.5 * fov));
+    }
+    distance *= 1.05;
+    const glm::dvec3 eye = centre + distance * away;
     Node node;
     node.name = "default";
     node.translation = eye;
-    node.rotation = glm::quat_cast(glm::transpose(glm::dmat3(view)));
+    node.rotation = glm::quat_cast(axes);
     node.camera = static_cast<int>(scene.cameras.size());
     Camera camera;
     camera.name = "default";
     camera.verticalFov = static_cast<float>(fov);
-    // A little more than the sphere, so that rounding cuts nothing off.
-    camera.nearPlane = static_cast<float>(0.5 * (distance - radius));
-    camera.farPlane = static_cast<float>(2 * (distance + radius));
+    // A little more than the box, so that rounding cuts nothing off.
+    camera.nearPlane = static_cast<float>(0.5 * (distance - nearest));
+    camera.farPlane = static_cast<float>(2 * (distance + unit));
     camera.node = static_cast<int>(scene.nodes.size());
     scene.roots.push_back(camera.node);
     scene.nodes.push_back(std::move(node));

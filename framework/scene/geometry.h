@@ -54,7 +54,7 @@ struct CameraState {
     bool orthographic = false;
     float verticalFov = 0.8f, halfHeight = 1, aspect = 0, nearPlane = 0.01f, farPlane = 100;
     // Reversed-z projection: near plane to depth 1, far plane (or infinity) to 0; depth range [0, 1].
-    // `aspect` is the frame's, used where the camera has none of its own.
+    // `frameAspect`: width / height. What the camera's own `aspect` frames is seen whole.
     [[nodiscard]] glm::mat4 projection(float frameAspect) const;
     friend bool operator==(const CameraState&, const CameraState&) = default;
 };

@@ -74,19 +74,22 @@ CameraState cameraAt(const Scene& scene, int camera, double time) {
 }
 
 glm::mat4 CameraState::projection(float frameAspect) const {
-    const double ratio = double(aspect > 0 ? aspect : frameAspect);
+    const double ratio = double(frameAspect);
+    // Pixels are square whatever frame the camera was made for; one that is narrower than that frame sees more
+    // above and below, so that nothing is lost.
+    const double taller = std::max(1.0, double(aspect) / ratio);
     const double n = double(nearPlane), f = double(farPlane);
     glm::dmat4 matrix(0);
     if (orthographic) {
-        matrix[0][0] = 1 / (ratio * double(halfHeight));
-        matrix[1][1] = 1 / double(halfHeight);
+        matrix[0][0] = 1 / (ratio * taller * double(halfHeight));
+        matrix[1][1] = 1 / (taller * double(halfHeight));
         // depth = (f - distance) / (f - n), distance = -z
         matrix[2][2] = 1 / (f - n);
         matrix[3][2] = f / (f - n);
         matrix[3][3] = 1;
         return glm::mat4(matrix);
     }
-    const double cotangent = 1 / std::tan(0.5 * double(verticalFov));
+    const double cotangent = 1 / (taller * std::tan(0.5 * double(verticalFov)));
     matrix[0][0] = cotangent / ratio;
     matrix[1][1] = cotangent;
     matrix[2][3] = -1;

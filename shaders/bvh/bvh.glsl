@@ -125,7 +125,7 @@ bool M(closestHit)(Ray ray, out Hit hit) {
     vec2 barycentrics;
     uint triangle;
     bool found = M(traverse)(ray, false, t, barycentrics, triangle);
-    hit = Hit(t, 0u, uvec2(triangle, packUnorm2x16(barycentrics)));
+    hit = Hit(t, 0.0, 0u, uvec2(triangle, packUnorm2x16(barycentrics)));
     return found;
 }
 #endif
@@ -166,7 +166,7 @@ void M(all)(Ray ray) {
 #ifdef MATERIAL_MASKED
             if (met && ids.z >= 2u) met = sceneCovers(ids.x, vec2(hit.u, hit.v));
 #endif
-            if (met) stopped = M(visit)(ray, Hit(hit.t, 0u, uvec2(ids.x, packUnorm2x16(vec2(hit.u, hit.v)))));
+            if (met) stopped = M(visit)(ray, Hit(hit.t, 0.0, 0u, uvec2(ids.x, packUnorm2x16(vec2(hit.u, hit.v)))));
             if (stopped) break;
         }
         if (size == 0) break;

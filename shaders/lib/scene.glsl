@@ -89,6 +89,7 @@ Surface sceneSurface(uint triangle, vec2 barycentrics, vec3 direction) {
 
     Surface surface;
     surface.position = p0 + barycentrics.x * (p1 - p0) + barycentrics.y * (p2 - p0);
+    surface.error = 0.0;
     surface.normal = faceNormal(p0, p1, p2, -direction);
     surface.front = dot(surface.normal, direction) < 0.0;
     // A vertex normal of zero length, or one that interpolation cancels, tells nothing: the face's does.

@@ -25,10 +25,19 @@ struct Ray {
 
 struct Hit {
     float t;     // along the ray that was traced
+    float error; // how far from there the surface may lie: 0 of triangles, about a cell of a proxy
     uint source; // which part of a composite tracer answered
     uvec2 id;    // opaque
 };
 
+#define noHit Hit(rayInfinity, 0.0, 0u, uvec2(0u))
+
 Ray surfaceRay(vec3 origin, vec3 normal, vec3 direction) {
     return Ray(origin, normal, direction, 0.0, rayInfinity, 1.0, 0u);
+}
+
+// All that a hit of a tracer tells that gives positions only: a surface that faces the ray.
+Surface facingSurface(Ray ray, Hit hit) {
+    return Surface(ray.origin + hit.t * ray.direction, hit.error, -ray.direction, -ray.direction, vec3(0.0), 0.0, 1.0, vec3(0.0),
+                   0u, true);
 }

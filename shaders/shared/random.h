@@ -11,6 +11,11 @@ const uint randomCandidates = 1024u;
 const uint randomGridJitter = 1025u;
 const uint randomLight = 2048u;
 const uint randomReference = 4096u;
+const uint randomIndirect = 8192u;   // like randomRayDirection: two a ray
+const uint randomShadow = 12288u;    // two a ray, for the point on the light
+const uint randomGlossy = 16384u;    // two a ray
+const uint randomLightJitter = 20480u; // of the positions of lights, per light
+const uint randomGather = 20992u;    // of samples of a reflective shadow map
 
 // Integer hash with good avalanche (multiply, xor-shift; constants found by search, "lowbias32").
 inline uint hashUint(uint x) {

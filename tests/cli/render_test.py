@@ -98,6 +98,23 @@ def test_refuses_what_it_does_not_know():
     assert "--frames" in refused("render", RAY_AO, "--frames", 0)[0]
 
 
+def test_a_bad_scene_file_is_one_line_and_nothing_is_written():
+    bad = {
+        "cut.gltf": ('{"asset": {"version": "2.0"', "cut.gltf"),
+        "outside.gltf": ('{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 12, "uri": "../secret.bin"}]}', "../secret.bin"),
+        "index.gltf": ('{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [7]}]}', "7"),
+        "cut.glb": ("glTF", "cut.glb"),
+        "scene.obj": ("v 0 0 0", "scene.obj"),
+    }
+    with folder() as here:
+        for name, (text, named) in bad.items():
+            Path(here, name).write_text(text)
+            lines = refused("render", RAY_AO, "--scene", f"{here}/{name}", "--out", f"{here}/out")
+            assert len(lines) == 1, lines
+            assert named in lines[0], lines[0]
+        assert files_in(here) == sorted(bad)
+
+
 def test_a_left_out_port_tells_why():
     # Asking for it makes it wanted; a port of a pass that cannot run here stays out.
     lines = refused("render", RAY_AO, *SMALL, "--output", "roma.tracer=x.png")

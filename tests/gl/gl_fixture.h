@@ -4,6 +4,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "shader/compose.h"
+#include "support/message.h"
 #include <cstring>
 #include <glad/gl.h>
 #include <gtest/gtest.h>
@@ -63,17 +64,6 @@ std::vector<T> as(const std::vector<std::byte>& bytes) {
     std::vector<T> result(bytes.size() / sizeof(T));
     std::memcpy(result.data(), bytes.data(), result.size() * sizeof(T));
     return result;
-}
-
-// The message of what `action` throws, or nothing.
-template<class Error, class Action>
-std::string messageOf(Action action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return {};
 }
 
 } // namespace kestrel::test

@@ -138,8 +138,8 @@ TEST_F(ObjectsTest, BuffersHoldBytesAndAreZeroAtFirst) {
     gl::Buffer copy(40, "copy");
     gl::copyResource(buffer, copy);
     EXPECT_EQ(copy.download(), buffer.download());
-    gl::Buffer nothing(0, "nothing");
-    EXPECT_TRUE(nothing.download().empty());
+    gl::Buffer hollow(0, "hollow");
+    EXPECT_TRUE(hollow.download().empty());
     EXPECT_EQ(buffer.texelView(Format::R32UI), buffer.texelView(Format::R32UI));
     EXPECT_NE(buffer.texelView(Format::R32UI), buffer.texelView(Format::R32F));
 }

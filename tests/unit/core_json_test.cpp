@@ -1,4 +1,5 @@
 #include "core/json.h"
+#include "support/message.h"
 #include <gtest/gtest.h>
 
 namespace kestrel {
@@ -19,20 +20,15 @@ TEST(Json, KnowsWhereEachValueStands) {
     EXPECT_EQ(json.find("b")->where.text(), "f.json:3:19");
 }
 
-std::string messageOf(std::string_view text) {
-    try {
-        Json::parse(text, "f.json");
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+std::string parseMessage(std::string_view text) {
+    return test::messageOf([&] { Json::parse(text, "f.json"); });
 }
 
 TEST(Json, RefusesWhatIsNotJsonWithItsPlace) {
-    EXPECT_EQ(messageOf("{\n \"a\": tru\n}").substr(0, 21), "f.json:2:10: not JSON");
-    EXPECT_EQ(messageOf("{\"a\": 1,\n\"a\": 2}"),
+    EXPECT_EQ(parseMessage("{\n \"a\": tru\n}").substr(0, 21), "f.json:2:10: not JSON");
+    EXPECT_EQ(parseMessage("{\"a\": 1,\n\"a\": 2}"),
               "f.json:2:1: the key 'a' stands twice in one object (first on line 1)");
-    EXPECT_EQ(messageOf(std::string(70, '[')), "f.json:1:65: nested deeper than 64 levels");
+    EXPECT_EQ(parseMessage(std::string(70, '[')), "f.json:1:65: nested deeper than 64 levels");
 }
 
 TEST(Json, FieldsCollectEveryMistake) {

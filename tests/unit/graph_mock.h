@@ -1,6 +1,7 @@
 // Pass types made of lambdas, for tests of everything that needs no GL.
 #pragma once
 #include "graph/plan.h"
+#include "support/message.h"
 #include <algorithm>
 #include <functional>
 
@@ -89,17 +90,6 @@ inline Plan compileText(const std::string& text, const Registry& registry, const
                         const World& world = {}) {
     const Graph graph = parseGraph(text, "g.json");
     return compile(graph, registry, makePasses(graph, registry), world, options);
-}
-
-// The message of the InputError that `call` throws, or "no error".
-template<class Call>
-std::string messageOf(const Call& call) {
-    try {
-        call();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
 }
 
 inline std::vector<std::string> passNames(const Plan& plan) {

@@ -226,4 +226,9 @@ inline ExrBuilder pizSample() {
     return exr;
 }
 
+// What decoding says of `bytes`; "no error" where they are an image.
+inline std::string decodeMessage(const Bytes& bytes, ImageFormat format) {
+    return test::messageOf([&] { decodeImage(bytes, format, "file"); });
+}
+
 } // namespace kestrel::test_files

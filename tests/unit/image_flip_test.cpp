@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "image/flip.h"
+#include "support/pattern.h"
 #include "unit/image_flip_oracle.h"
 #include <algorithm>
 #include <cmath>
@@ -8,16 +9,9 @@
 namespace kestrel {
 namespace {
 
-constexpr float defaultDensity = FlipOptions{}.pixelsPerDegree;
+using test::pattern;
 
-Image pattern(int width, int height, int channels, std::uint32_t seed) {
-    Image image(width, height, channels);
-    for (float& value : image.values) {
-        seed = seed * 1664525U + 1013904223U;
-        value = static_cast<float>(seed >> 8) / static_cast<float>(1U << 24);
-    }
-    return image;
-}
+constexpr float defaultDensity = FlipOptions{}.pixelsPerDegree;
 
 // Something like a rendered picture: shading, an edge, colours.
 Image picture(int width, int height) {

@@ -1,6 +1,8 @@
 // Files cut off or changed at every byte: an error that names the file, or an image; never a crash.
 #include "core/error.h"
 #include "image/io.h"
+#include "support/message.h"
+#include "support/pattern.h"
 #include "unit/image_file_builders.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,29 +10,12 @@
 namespace kestrel {
 namespace {
 
+using test::pattern;
 using test_files::Bytes;
+using test_files::decodeMessage;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-Image pattern(int width, int height, int channels) {
-    Image image(width, height, channels);
-    std::uint32_t state = 1;
-    for (float& value : image.values) {
-        state = state * 1664525U + 1013904223U;
-        value = static_cast<float>(state >> 8) / static_cast<float>(1U << 24);
-    }
-    return image;
-}
-
-std::string decodeMessage(const Bytes& bytes, ImageFormat format) {
-    try {
-        decodeImage(bytes, format, "file");
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
 
 struct Sample {
     ImageFormat format;

@@ -1,6 +1,8 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "image/io.h"
+#include "support/message.h"
+#include "support/pattern.h"
 #include "unit/image_file_builders.h"
 #include <bit>
 #include <cmath>
@@ -12,7 +14,10 @@
 namespace kestrel {
 namespace {
 
+using test::messageOf;
+using test::pattern;
 using test_files::Bytes;
+using test_files::decodeMessage;
 using testing::HasSubstr;
 using testing::StartsWith;
 namespace fs = std::filesystem;
@@ -32,30 +37,6 @@ protected:
     ~ImageFiles() override { fs::remove_all(folder_); }
     fs::path folder_;
 };
-
-template<class Function>
-std::string messageOf(Function function) {
-    try {
-        function();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
-
-std::string decodeMessage(const Bytes& bytes, ImageFormat format) {
-    return messageOf([&] { decodeImage(bytes, format, "file"); });
-}
-
-Image pattern(int width, int height, int channels) {
-    Image image(width, height, channels);
-    std::uint32_t state = 1;
-    for (float& value : image.values) {
-        state = state * 1664525U + 1013904223U;
-        value = static_cast<float>(state >> 8) / static_cast<float>(1U << 24);
-    }
-    return image;
-}
 
 Image roundTrip(const Image& image, ImageFormat format, Encoding encoding = Encoding::Linear) {
     return decodeImage(encodeImage(image, format, encoding), format, "file");

@@ -1,6 +1,8 @@
 #include "core/error.h"
 #include "image/error_figures.h"
 #include "image/metrics.h"
+#include "support/message.h"
+#include "support/pattern.h"
 #include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,27 +11,9 @@
 namespace kestrel {
 namespace {
 
+using test::messageOf;
+using test::pattern;
 using testing::HasSubstr;
-
-// A picture with structure, the same on every machine.
-Image pattern(int width, int height, int channels, std::uint32_t seed = 1) {
-    Image image(width, height, channels);
-    for (float& value : image.values) {
-        seed = seed * 1664525U + 1013904223U;
-        value = static_cast<float>(seed >> 8) / static_cast<float>(1U << 24);
-    }
-    return image;
-}
-
-template<class Function>
-std::string messageOf(Function function) {
-    try {
-        function();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
 
 TEST(Metrics, MseOfConstantImagesIsTheSquaredDifference) {
     const Image a(5, 3, 3, 0.25F);

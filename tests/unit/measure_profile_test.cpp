@@ -62,9 +62,9 @@ TEST(RunStats, JsonHasTheKeysThatScriptsRelyOn) {
 }
 
 TEST(BytesText, GoesOverToTheNextUnitAt1024) {
-    EXPECT_EQ(bytesText(1023), "1023 B");
+    EXPECT_EQ(bytesText(1023), "1023 bytes");
     EXPECT_EQ(bytesText(1536), "1.5 KiB");
-    EXPECT_EQ(bytesText(std::uint64_t{3} << 30), "3.0 GiB");
+    EXPECT_EQ(bytesText(std::uint64_t{3} << 30), "3 GiB");
 }
 
 } // namespace

@@ -245,7 +245,10 @@ TEST(Projection, IsReversedFromOneAtTheNearPlaneToZeroAtTheFarPlane) {
     EXPECT_NEAR(projected(camera, {0, 0, -1e30f}, 2).z, 0, 1e-6);
     EXPECT_NEAR(projected(camera, {0, 0, -1}, 2).z, 0.5f, 1e-6);
     camera.aspect = 1;
-    EXPECT_NEAR(projected(camera, {half, 0, -1}, 2).x, 1, 1e-6) << "the camera's own aspect goes first";
+    EXPECT_NEAR(projected(camera, {2 * half, half, -1}, 2).x, 1, 1e-6) << "pixels are square";
+    EXPECT_NEAR(projected(camera, {2 * half, half, -1}, 2).y, 1, 1e-6);
+    EXPECT_NEAR(projected(camera, {half, 2 * half, -1}, 0.5f).x, 1, 1e-6) << "what it framed stays in view";
+    EXPECT_NEAR(projected(camera, {half, 2 * half, -1}, 0.5f).y, 1, 1e-6);
 }
 
 TEST(Projection, IsReversedForOrthographicCamerasToo) {

@@ -2,6 +2,7 @@
 #include "scene/gltf_export.h"
 #include "scene/gltf_import.h"
 #include "support/gltf_builder.h"
+#include "support/message.h"
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -15,20 +16,15 @@ using nlohmann::json;
 using test::GltfBuilder;
 using test::TemporaryFolder;
 
-// Loads `bytes` as a file; the message of the InputError, or empty where it loads.
-std::string messageOf(const TemporaryFolder& folder, std::span<const std::byte> bytes, const char* name) {
+// What loading `bytes` as a file says; "no error" where it loads.
+std::string loadMessage(const TemporaryFolder& folder, std::span<const std::byte> bytes, const char* name) {
     writeFile(folder / name, bytes);
-    try {
-        (void)loadScene((folder / name).string());
-        return {};
-    } catch (const InputError& error) {
-        return error.what();
-    }
+    return test::messageOf([&] { (void)loadScene((folder / name).string()); });
 }
 
-std::string messageOf(const std::string& text) {
+std::string loadMessage(const std::string& text) {
     const TemporaryFolder folder;
-    return messageOf(folder, std::as_bytes(std::span(text)), "bad.gltf");
+    return loadMessage(folder, std::as_bytes(std::span(text)), "bad.gltf");
 }
 
 // A file with a skin, a morph target, an animation, a texture, a camera and a light.
@@ -68,7 +64,7 @@ GltfBuilder richFile() {
     return builder;
 }
 
-TEST(GltfHostile, TheRichFileIsGood) { EXPECT_EQ(messageOf(richFile().text()), ""); }
+TEST(GltfHostile, TheRichFileIsGood) { EXPECT_EQ(loadMessage(richFile().text()), "no error"); }
 
 struct Case {
     const char* name;
@@ -329,7 +325,7 @@ TEST(GltfHostile, SaysInOneLineWhatIsWrong) {
         SCOPED_TRACE(bad.name);
         GltfBuilder builder = richFile();
         bad.spoil(builder);
-        const std::string message = messageOf(builder.text());
+        const std::string message = loadMessage(builder.text());
         EXPECT_NE(message.find("bad.gltf"), std::string::npos) << message;
         EXPECT_NE(message.find(bad.message), std::string::npos) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
@@ -337,12 +333,12 @@ TEST(GltfHostile, SaysInOneLineWhatIsWrong) {
 }
 
 TEST(GltfHostile, JsonThatIsNoneHasAPlace) {
-    EXPECT_NE(messageOf("{\n  \"asset\": nil}").find("bad.gltf:2:"), std::string::npos)
-        << messageOf("{\n  \"asset\": nil}");
-    EXPECT_NE(messageOf("[]").find("is not an object"), std::string::npos);
-    EXPECT_NE(messageOf("").find("the file is empty"), std::string::npos);
-    EXPECT_NE(messageOf("{\"asset\": 1e999}").find("number is out of range"), std::string::npos);
-    EXPECT_NE(messageOf(std::string(1000, '[')).find("nested more than 64 levels"), std::string::npos);
+    EXPECT_NE(loadMessage("{\n  \"asset\": nil}").find("bad.gltf:2:"), std::string::npos)
+        << loadMessage("{\n  \"asset\": nil}");
+    EXPECT_NE(loadMessage("[]").find("is not an object"), std::string::npos);
+    EXPECT_NE(loadMessage("").find("the file is empty"), std::string::npos);
+    EXPECT_NE(loadMessage("{\"asset\": 1e999}").find("number is out of range"), std::string::npos);
+    EXPECT_NE(loadMessage(std::string(1000, '[')).find("nested more than 64 levels"), std::string::npos);
 }
 
 std::string messageWith(const GltfBuilder& builder, const GltfLimits& limits) {
@@ -399,18 +395,18 @@ std::vector<std::byte> richGlb(const TemporaryFolder& folder) {
 TEST(GltfHostile, EveryTruncationIsAnError) {
     const TemporaryFolder folder;
     const std::vector<std::byte> glb = richGlb(folder);
-    ASSERT_EQ(messageOf(folder, glb, "cut.glb"), "");
+    ASSERT_EQ(loadMessage(folder, glb, "cut.glb"), "no error");
     for (size_t size = 0; size < glb.size(); ++size)
-        EXPECT_NE(messageOf(folder, std::span(glb).first(size), "cut.glb"), "")
+        EXPECT_NE(loadMessage(folder, std::span(glb).first(size), "cut.glb"), "no error")
             << size << " of " << glb.size();
     const std::string text = richFile().text();
     for (size_t size = 0; size < text.size(); ++size)
-        EXPECT_NE(messageOf(folder, std::as_bytes(std::span(text)).first(size), "cut.gltf"), "") << size;
+        EXPECT_NE(loadMessage(folder, std::as_bytes(std::span(text)).first(size), "cut.gltf"), "no error") << size;
 }
 
 // Either the file loads or there is an InputError of one line; a crash or another exception fails the test.
 void expectSurvives(const TemporaryFolder& folder, std::span<const std::byte> bytes, const char* name) {
-    const std::string message = messageOf(folder, bytes, name);
+    const std::string message = loadMessage(folder, bytes, name);
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 

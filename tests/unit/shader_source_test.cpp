@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "shader/source.h"
+#include "support/message.h"
 #include <filesystem>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,13 +25,8 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder); }
     void write(const std::string& path, std::string_view text) const { writeFile(folder / path, text); }
-    std::string messageOf(ShaderLibrary& library, const std::string& path) const {
-        try {
-            library.text(path);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "no error";
+    static std::string messageOf(ShaderLibrary& library, const std::string& path) {
+        return test::messageOf([&] { library.text(path); });
     }
     fs::path folder;
 };

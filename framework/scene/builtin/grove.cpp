@@ -5,12 +5,10 @@
 #include "scene/builtin/shapes.h"
 #include "scene/builtin/textures.h"
 #include <array>
-#include <numbers>
 
 namespace kestrel::builtin {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
 constexpr float groundSize = 11.5f; // half the side
 
 float groundHeight(float x, float z) {

@@ -5,12 +5,10 @@
 #include "scene/builtin/scenes.h"
 #include "scene/builtin/shapes.h"
 #include <glm/gtc/matrix_transform.hpp>
-#include <numbers>
 
 namespace kestrel::builtin {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
 constexpr int bays = 7;
 constexpr float bay = 3.2f, halfLength = 0.5f * bays * bay;
 constexpr float rowX = 3.2f;      // the colonnades stand at x = -rowX and rowX

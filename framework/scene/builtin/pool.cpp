@@ -5,12 +5,10 @@
 #include "scene/builtin/shapes.h"
 #include "scene/builtin/textures.h"
 #include <glm/gtc/matrix_transform.hpp>
-#include <numbers>
 
 namespace kestrel::builtin {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
 const glm::vec3 roomLow(-4, 0, -3), roomHigh(4, 3.2f, 3);
 const glm::vec2 basin(2.4f, 1.3f); // half the size of the basin
 constexpr float depth = 1.3f, waterLevel = -0.16f;

@@ -4,9 +4,12 @@
 #include "scene/scene.h"
 #include <functional>
 #include <glm/glm.hpp>
+#include <numbers>
 #include <vector>
 
 namespace kestrel::builtin {
+
+inline constexpr float pi = std::numbers::pi_v<float>;
 
 // A point of a surface; u and v from 0 to 1. The front is the side of cross(d/du, d/dv).
 using SurfaceFunction = std::function<glm::vec3(float u, float v)>;

@@ -10,7 +10,6 @@
 namespace kestrel::builtin {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 
 struct Joint {
     std::string name;
@@ -91,7 +90,7 @@ private:
         limbs_.push_back(
             {{hip, knee, foot}, {0.19f * side, 0.055f, z + 0.17f}, {0.13f, 0.085f, 0.06f, 0.05f}});
         // Diagonal legs swing together.
-        hips_.emplace_back(hip, (front == (side > 0)) ? 0 : pi);
+        hips_.emplace_back(hip, (front == (side > 0)) ? 0 : std::numbers::pi);
     }
 
     [[nodiscard]] std::vector<glm::vec3> pointsOf(const Limb& limb) const {
@@ -179,7 +178,7 @@ public:
 private:
     static constexpr int keys = 24;
     static constexpr float seconds = 1.6f;
-    static double phase(int i) { return 2 * pi * (i % keys) / keys; }
+    static double phase(int i) { return 2 * std::numbers::pi * (i % keys) / keys; }
     static AnimationChannel begin(int node, AnimatedPath path) {
         AnimationChannel channel;
         channel.node = node;

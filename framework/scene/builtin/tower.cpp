@@ -4,12 +4,10 @@
 #include "scene/builtin/scenes.h"
 #include "scene/builtin/shapes.h"
 #include <glm/gtc/matrix_transform.hpp>
-#include <numbers>
 
 namespace kestrel::builtin {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
 constexpr int turns = 3, stepsPerTurn = 20;
 constexpr float stepAngle = 15 * pi / 180;
 constexpr float landingAngle = 60 * pi / 180; // with the steps of a turn: one full circle
