@@ -1,0 +1,34 @@
+// Looking things up in maps made from lights (shared/light_map.h).
+#include "lib/trips.glsl"
+#include "shared/light_map.h"
+
+// The lights of one kind: slots [FIRST, FIRST + SLOTS) of a block, of which `count` are in use. SLOTS is a constant, so that
+// a kind that the scene has none of leaves no code.
+#define FOR_LIGHTS(slot, FIRST, SLOTS, count)                                                                                \
+    for (uint slot = uint(FIRST); slot < uint(FIRST) + uint(SLOTS) && slot < uint(FIRST) + count; ++slot)
+
+// Where a position lies in a map.
+struct LightMapPlace {
+    vec2 texel;      // coordinate on the face; the centre of a texel is at + 0.5
+    int layer;
+    float depth;     // reversed: 1 at the near plane
+    float footprint; // width of a texel there, in scene units
+    vec3 ahead;      // the face's right, up and forward of what was asked about
+    bool inside;     // of the face
+};
+
+LightMapPlace lightMapPlace(LightMap map, vec3 position, float resolution) {
+    vec3 local = lightMapLocal(map.axisX, map.axisY, map.axisZ, position - map.origin);
+    uint face = map.faces > 1u ? min(lightMapFace(local), map.faces - 1u) : 0u;
+    bool parallel = map.faces == 0u;
+    LightMapPlace place;
+    place.ahead = lightMapTurned(local, face);
+    float w = parallel ? 1.0 : place.ahead.z;
+    vec2 onFace = place.ahead.xy / (w * map.halfWidth) + map.jitter;
+    place.texel = (onFace * 0.5 + 0.5) * resolution;
+    place.layer = int(map.firstLayer + face);
+    place.depth = parallel ? 1.0 - place.ahead.z * map.inverseRange : map.nearPlane / place.ahead.z;
+    place.footprint = 2.0 * w * map.halfWidth / resolution;
+    place.inside = w > 0.0 && all(greaterThanEqual(place.texel, vec2(0.0))) && all(lessThan(place.texel, vec2(resolution)));
+    return place;
+}

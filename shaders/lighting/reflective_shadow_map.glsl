@@ -1,0 +1,50 @@
+// The module `radiance` by reflective shadow maps: one diffuse reflection of point, spot and directional lights.
+//
+// A hit counts as the surface that a texel holds if it lies within a tolerance of that surface's plane: so many texels as `bias` (a curved
+// surface leaves its plane within one) and the error that the hit's tracer states. Distance from the plane, not along the
+// ray of light: within a texel the latter grows without bound as the light comes in flat. Light leaves to the lit side only,
+// so that a thin wall keeps it out.
+#include "lib/radiance.glsl"
+#if LIGHTS > 0
+#include "lib/light_maps.glsl"
+
+uniform sampler2DArray M(map_radiance);
+uniform sampler2DArray M(map_normal);
+layout(std140) uniform M(Maps) {
+    LightMapCounts M(counts);
+    LightMap M(maps)[LIGHTS];
+    LightRecord M(lights)[LIGHTS];
+};
+
+vec3 M(fromMap)(uint slot, Surface at, vec3 toward) {
+    LightMap map = M(maps)[slot];
+    LightMapPlace place = lightMapPlace(map, at.position, float(RESOLUTION));
+    ivec3 texel = ivec3(clamp(ivec2(floor(place.texel)), ivec2(0), ivec2(RESOLUTION - 1)), place.layer);
+    vec4 plane = texelFetch(M(map_normal), texel, 0);
+    vec3 radiance = texelFetch(M(map_radiance), texel, 0).rgb;
+    float off = abs(dot(plane.xyz, at.position - map.origin) - plane.w);
+    bool lit = place.inside && off <= M(counts).bias * place.footprint + at.error && dot(plane.xyz, toward) > 0.0;
+    return lit ? radiance : vec3(0.0);
+}
+#endif
+
+vec3 M(surface)(Surface at, vec3 toward) {
+    vec3 sum = vec3(0.0);
+#if LIGHTS > 0
+    FOR_LIGHTS(slot, 0, POINT_LIGHTS, M(counts).points) {
+        TRIP;
+        sum += M(fromMap)(slot, at, toward);
+    }
+    FOR_LIGHTS(slot, POINT_LIGHTS, SPOT_LIGHTS, M(counts).spots) {
+        TRIP;
+        sum += M(fromMap)(slot, at, toward);
+    }
+    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS, DIRECTIONAL_LIGHTS, M(counts).directionals) {
+        TRIP;
+        sum += M(fromMap)(slot, at, toward);
+    }
+#endif
+    return sum;
+}
+
+vec3 M(miss)(vec3 direction) { return vec3(0.0); }
