@@ -1,9 +1,11 @@
 #include "plugin/plugin.h"
+#include "direct_light.h"
 #include "environment.h"
 #include "radiance_sum.h"
 #include "reflective_shadow_map.h"
 
 KESTREL_PLUGIN {
+    registry.add(kestrel::DirectLight::type());
     registry.add(kestrel::Environment::type());
     registry.add(kestrel::RadianceSum::type());
     registry.add(kestrel::ReflectiveShadowMap::type());

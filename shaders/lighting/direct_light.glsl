@@ -1,0 +1,70 @@
+// The module `radiance` by the scene's lights: emission, and what a hit reflects diffusely of each light that its shadow map
+// lets through.
+#include "lib/radiance.glsl"
+#if LIGHTS > 0
+#include "lib/lights.glsl"
+#include "lib/light_shadow.glsl"
+#include "lib/sampling.glsl"
+
+layout(std140) uniform M(Maps) {
+    LightMapCounts M(counts);
+    LightMap M(maps)[LIGHTS];
+    LightRecord M(lights)[LIGHTS];
+};
+#ifdef SHADOWS
+uniform sampler2DArray M(shadow_maps);
+#define VISIBLE(slot, at)                                                                                                    \
+    shadowVisibility(M(shadow_maps), M(maps)[slot], at.position, at.normal, M(counts).bias, SHADOW_TAPS)
+#else
+#define VISIBLE(slot, at) 1.0
+#endif
+
+vec3 M(punctual)(uint slot, Surface at) {
+    vec3 toLight;
+    float distanceToLight;
+    vec3 arriving = punctualLight(M(lights)[slot], at.position, toLight, distanceToLight);
+    return arriving * (max(0.0, dot(at.shadingNormal, toLight)) * VISIBLE(slot, at));
+}
+
+vec3 M(irradiance)(Surface at) {
+    vec3 sum = vec3(0.0);
+    FOR_LIGHTS(slot, 0, POINT_LIGHTS, M(counts).points) {
+        TRIP;
+        sum += M(punctual)(slot, at);
+    }
+    const uint spots = uint(POINT_LIGHTS);
+    FOR_LIGHTS(slot, spots, SPOT_LIGHTS, M(counts).spots) {
+        TRIP;
+        sum += M(punctual)(slot, at);
+    }
+    const uint directionals = spots + uint(SPOT_LIGHTS);
+    FOR_LIGHTS(slot, directionals, DIRECTIONAL_LIGHTS, M(counts).directionals) {
+        TRIP;
+        sum += M(punctual)(slot, at);
+    }
+    const uint rectangles = directionals + uint(DIRECTIONAL_LIGHTS);
+    FOR_LIGHTS(slot, rectangles, RECTANGLE_LIGHTS, M(counts).rectangles) {
+        TRIP;
+        sum += rectangleLight(M(lights)[slot], at.position, at.shadingNormal) * VISIBLE(slot, at);
+    }
+    const uint spheres = rectangles + uint(RECTANGLE_LIGHTS);
+    FOR_LIGHTS(slot, spheres, SPHERE_LIGHTS, M(counts).spheres) {
+        TRIP;
+        sum += sphereLight(M(lights)[slot], at.position, at.shadingNormal) * VISIBLE(slot, at);
+    }
+    return sum;
+}
+#endif
+
+vec3 M(surface)(Surface at, vec3 toward) {
+    vec3 leaving = vec3(0.0);
+#ifdef EMISSION
+    leaving += at.emission;
+#endif
+#if LIGHTS > 0
+    leaving += at.albedo * ((1.0 - at.metallic) / pi) * min(M(irradiance)(at), vec3(lightMaximum));
+#endif
+    return leaving;
+}
+
+vec3 M(miss)(vec3 direction) { return vec3(0.0); }
