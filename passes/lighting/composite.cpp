@@ -1,0 +1,82 @@
+#include "composite.h"
+#include "execute/commands.h"
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+struct Part {
+    const char* port;
+    const char* define;
+    const char* sentence;
+    float neutral; // a constant input of this value changes nothing and is left out
+};
+
+constexpr Part compositeParts[] = {
+    {"direct", "DIRECT", "Direct light, irradiance over pi", 0},
+    {"indirect", "INDIRECT", "Indirect light, irradiance over pi", 0},
+    {"visibility", "VISIBILITY", "Ambient visibility: multiplies indirect and ambient light", 1},
+    {"shadow", "SHADOWED", "Visibility of the lights: multiplies the direct light", 1},
+    {"specular", "SPECULAR", "Radiance reflected specularly towards the eye", 0},
+    {"emission", "EMISSION", "Emitted radiance", 0},
+    {"background", "BACKGROUND", "Radiance where nothing is", 0},
+    {"material", "MATERIAL", "Roughness, metallic, unlit: metals reflect nothing diffusely, the unlit shine",
+     -1},
+};
+
+} // namespace
+
+PassType Composite::type() {
+    Describe<Composite> table("Composite", "Radiance that reaches the eye, from light and material");
+    table.input("albedo", PortKind::Texture, "Linear base colour; a is 0 where nothing is");
+    for (const Part& part : compositeParts) table.optionalInput(part.port, PortKind::Texture, part.sentence);
+    table.output("result", PortKind::Texture, "Outgoing radiance; a is 1 where something is")
+        .vector("ambient", &Composite::ambient, 0, 1e9, "radiance",
+                "Light from all sides besides the inputs: albedo times this, darkened by visibility");
+    return table;
+}
+
+Declaration Composite::declare(const World&, const Inputs& inputs, const Demand&) const {
+    Declaration declaration;
+    const Desc& albedo = inputs["albedo"].desc;
+    declaration.outputs = {
+        {.port = "result", .desc = Desc::texture2D(Format::RGBA32F, albedo.extent, albedo.view)}};
+    Step step{.name = "composite",
+              .shaders = {"lighting/composite.comp"},
+              .defines = {{"ALBEDO_FORMAT", std::string(formatInfo(albedo.format).name)}},
+              .uses = {{.port = "albedo", .access = Access::Image},
+                       {.port = "result", .access = Access::Image, .write = true}},
+              .modules = {},
+              .group = "composite"};
+    if (ambient != glm::vec3(0)) step.defines.emplace("AMBIENT", "1");
+    for (const Part& part : compositeParts) {
+        if (!inputs.connected(part.port)) continue;
+        const Inputs::Input& input = inputs[part.port];
+        const FormatInfo& format = formatInfo(input.desc.format);
+        if (input.desc.extent != albedo.extent)
+            declaration.problems.push_back(
+                {part.port, fmt::format("is {} but albedo is {}", describe(input.desc), describe(albedo))});
+        if (format.integer)
+            declaration.problems.push_back(
+                {part.port, fmt::format("is no light: it is {}", describe(input.desc))});
+        if (input.constant &&
+            (format.channels == 1 ? input.constant->x == part.neutral
+                                  : glm::vec3(*input.constant) == glm::vec3(part.neutral))) {
+            declaration.leftOut.push_back({part.port, fmt::format("it is {} everywhere", part.neutral)});
+            continue;
+        }
+        step.defines.emplace(part.define, format.channels == 1 ? "rrr" : "rgb"); // which components to read
+        // By sampler: there may be more inputs than image units.
+        step.uses.push_back({.port = part.port, .access = Access::Fetch});
+    }
+    declaration.steps.push_back(std::move(step));
+    declaration.depends = Causes::Properties;
+    return declaration;
+}
+
+void Composite::execute(const Step& step, Commands& commands) {
+    if (step.defines.contains("AMBIENT")) commands.set("ambient", ambient);
+    commands.dispatchOver(commands.desc("result").extent);
+}
+
+} // namespace kestrel
