@@ -1,26 +1,7 @@
 #include "reference/alpha_test.h"
-#include <algorithm>
-#include <cmath>
+#include "reference/texture_sample.h"
 
 namespace kestrel {
-namespace {
-
-int wrapped(int i, int size, Wrap wrap) {
-    if (wrap == Wrap::ClampToEdge) return std::clamp(i, 0, size - 1);
-    const int period = wrap == Wrap::Repeat ? size : 2 * size;
-    const int k = ((i % period) + period) % period;
-    return k < size ? k : period - 1 - k;
-}
-
-// KHR_texture_transform: scale, then rotation, then offset.
-glm::vec2 transformed(const TextureRef& texture, const glm::vec2& texCoord) {
-    const glm::vec2 p = texCoord * texture.scale;
-    const float c = std::cos(texture.rotation), s = std::sin(texture.rotation);
-    return glm::vec2(c * p.x + s * p.y, -s * p.x + c * p.y) + texture.offset;
-}
-
-} // namespace
-
 std::uint32_t firstMaskedTriangle(const Geometry& geometry) {
     const auto count = [&](TriangleClass c) { return geometry.ranges[static_cast<size_t>(c)].count; };
     return geometry.triangleCount() - count(TriangleClass::Masked) - count(TriangleClass::MaskedDoubleSided);
@@ -54,20 +35,8 @@ AlphaTest::AlphaTest(const Geometry& geometry, const Scene& scene)
 
 float AlphaTest::sample(const TextureRef& texture, const glm::vec2& texCoord) const {
     const AlphaImage& image = images_[static_cast<size_t>(texture.image)];
-    const glm::vec2 p = transformed(texture, texCoord) * glm::vec2(image.width, image.height);
-    const auto at = [&](int x, int y) {
-        const int column = wrapped(x, image.width, texture.wrapS);
-        const int row = wrapped(y, image.height, texture.wrapT);
-        return static_cast<float>(image.alpha[static_cast<size_t>(row) * static_cast<size_t>(image.width) +
-                                              static_cast<size_t>(column)]) /
-               255;
-    };
-    if (texture.nearest) return at(static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)));
-    const glm::vec2 q = p - 0.5f;
-    const glm::vec2 f = q - glm::floor(q);
-    const int x = static_cast<int>(std::floor(q.x)), y = static_cast<int>(std::floor(q.y));
-    return glm::mix(glm::mix(at(x, y), at(x + 1, y), f.x), glm::mix(at(x, y + 1), at(x + 1, y + 1), f.x),
-                    f.y);
+    return sampleTexels(texture, image.width, image.height, texCoord,
+                        [&](size_t i) { return static_cast<float>(image.alpha[i]) / 255; });
 }
 
 bool AlphaTest::isSolid(std::uint32_t triangle, float u, float v) const {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-#define NEEDS_EMBREE()                                                                                       \
+#define GATHER_NEEDS_EMBREE()                                                                                \
     if (parts().find("embree") == std::string::npos) GTEST_SKIP() << "built without Embree"
 
 void addFace(Geometry& g, const std::array<glm::vec3, 3>& corners, const std::array<glm::vec3, 3>& normals,
@@ -50,8 +50,8 @@ void addRoundRoom(Geometry& g, float radius, int n) {
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < 2 * n; ++j) {
             const glm::vec3 a = at(i, j), b = at(i, j + 1), c = at(i + 1, j + 1), d = at(i + 1, j);
-            if (i > 0) addFace(g, {radius * a, radius * b, radius * c}, {-a, -b, -c}, 0);
-            if (i + 1 < n) addFace(g, {radius * a, radius * c, radius * d}, {-a, -c, -d}, 0);
+            if (i > 0) addFace(g, {radius * a, radius * c, radius * b}, {-a, -c, -b}, 0);
+            if (i + 1 < n) addFace(g, {radius * a, radius * d, radius * c}, {-a, -d, -c}, 0);
         }
 }
 
@@ -92,7 +92,7 @@ GatherInputs pointsFacing(const std::vector<glm::vec3>& positions, const glm::ve
     return {row(positions), row(normals), {}, {}};
 }
 
-struct World {
+struct LitWorld {
     Geometry geometry;
     Scene scene;
     std::vector<LightState> lights;
@@ -121,9 +121,9 @@ float lambertPolygon(const std::vector<glm::vec3>& corners, const glm::vec3& p, 
 }
 
 TEST(ReferenceSoftShadow, RectangleOverAPlaneHasLambertsFormFactor) {
-    NEEDS_EMBREE();
+    GATHER_NEEDS_EMBREE();
     for (const float scale : {1e-4f, 1.0f, 1e4f}) {
-        World world;
+        LitWorld world;
         world.scene = materialsScene({matteOf(glm::vec3(0.5f))});
         addSquare(world.geometry, scale * glm::vec3(-4, 0, -4), {0, 0, 8 * scale}, {8 * scale, 0, 0});
         LightState light = lightOf(LightKind::Rectangle, scale * glm::vec3(0.2f, 1, 0), 3);
@@ -148,8 +148,8 @@ TEST(ReferenceSoftShadow, RectangleOverAPlaneHasLambertsFormFactor) {
 }
 
 TEST(ReferenceSoftShadow, SphereLightFallsWithTheSquareOfTheDistance) {
-    NEEDS_EMBREE();
-    World world;
+    GATHER_NEEDS_EMBREE();
+    LitWorld world;
     world.scene = materialsScene({matteOf(glm::vec3(0.5f))});
     addSquare(world.geometry, {-9, 0, -9}, {0, 0, 18}, {18, 0, 0});
     for (const float radius : {0.001f, 0.1f, 0.9f}) {
@@ -170,8 +170,8 @@ TEST(ReferenceSoftShadow, SphereLightFallsWithTheSquareOfTheDistance) {
 }
 
 TEST(ReferenceSoftShadow, AnEmissiveSquareShinesAsTheRectangle) {
-    NEEDS_EMBREE();
-    World world;
+    GATHER_NEEDS_EMBREE();
+    LitWorld world;
     world.scene = materialsScene({matteOf(glm::vec3(0.5f)), matteOf(glm::vec3(0), {1, 2, 4})});
     addSquare(world.geometry, {-4, 0, -4}, {0, 0, 8}, {8, 0, 0});
     addSquare(world.geometry, {-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, 1); // its front looks down
@@ -203,11 +203,11 @@ TEST(ReferenceSoftShadow, AnEmissiveSquareShinesAsTheRectangle) {
 }
 
 TEST(ReferenceSoftShadow, ThePenumbraGrowsWithTheDistanceOfTheOccluder) {
-    NEEDS_EMBREE();
+    GATHER_NEEDS_EMBREE();
     LightState light = lightOf(LightKind::Rectangle, {0, 4, 0}, 1);
     light.halfSize = {0.5f, 0.01f};
     const auto width = [&](float height) {
-        World world;
+        LitWorld world;
         world.scene = materialsScene({matteOf(glm::vec3(0.5f))});
         addSquare(world.geometry, {-9, 0, -9}, {0, 0, 18}, {18, 0, 0});
         // A half plane: its edge runs along z at x = 0.
@@ -231,9 +231,9 @@ TEST(ReferenceSoftShadow, ThePenumbraGrowsWithTheDistanceOfTheOccluder) {
 }
 
 TEST(ReferenceIndirectDiffuse, ARoomOfOneRadianceGivesThatRadiance) {
-    NEEDS_EMBREE();
+    GATHER_NEEDS_EMBREE();
     for (const float scale : {1e-4f, 1.0f, 1e4f}) {
-        World world;
+        LitWorld world;
         world.scene = materialsScene({matteOf(glm::vec3(0.5f), {0.25f, 0.5f, 2})});
         addRoundRoom(world.geometry, scale, 16);
         GatherSettings settings;
@@ -251,8 +251,8 @@ TEST(ReferenceIndirectDiffuse, ARoomOfOneRadianceGivesThatRadiance) {
 }
 
 TEST(ReferenceIndirectDiffuse, TheIntegratingSphere) {
-    NEEDS_EMBREE();
-    World world;
+    GATHER_NEEDS_EMBREE();
+    LitWorld world;
     world.scene = materialsScene({matteOf({0.5f, 0.25f, 0})});
     addRoundRoom(world.geometry, 2, 64);
     GatherSettings settings;
@@ -290,8 +290,8 @@ TEST(ReferenceIndirectDiffuse, TheIntegratingSphere) {
 }
 
 TEST(ReferenceIndirectDiffuse, TheSunOnAFloorSeenFromAbove) {
-    NEEDS_EMBREE();
-    World world;
+    GATHER_NEEDS_EMBREE();
+    LitWorld world;
     world.scene = materialsScene({matteOf({0.8f, 0.4f, 0.2f})});
     addSquare(world.geometry, {-1e4f, 0, -1e4f}, {0, 0, 2e4f}, {2e4f, 0, 0});
     LightState sun = lightOf(LightKind::Directional, {}, 5);
@@ -302,8 +302,8 @@ TEST(ReferenceIndirectDiffuse, TheSunOnAFloorSeenFromAbove) {
 }
 
 TEST(ReferenceIndirectDiffuse, OpenPlaneAndHalfASky) {
-    NEEDS_EMBREE();
-    World world;
+    GATHER_NEEDS_EMBREE();
+    LitWorld world;
     world.scene = materialsScene({matteOf(glm::vec3(0.5f))});
     addSquare(world.geometry, {-10, 0, -10}, {0, 0, 20}, {20, 0, 0});
     GatherSettings settings;
@@ -339,7 +339,7 @@ double directionalAlbedo(double cosView, double alpha) {
 }
 
 struct Glossy {
-    static GatherResult reflect(const World& world, float cosView, float roughness, float metallic,
+    static GatherResult reflect(const LitWorld& world, float cosView, float roughness, float metallic,
                                 GatherSettings settings) {
         // The plane y = 0, seen from a distance of 1 at this cosine.
         CameraState camera;
@@ -353,8 +353,8 @@ struct Glossy {
 };
 
 TEST(ReferenceGlossyReflection, TheWhiteFurnaceGivesTheAlbedoOfTheLobe) {
-    NEEDS_EMBREE();
-    World world;
+    GATHER_NEEDS_EMBREE();
+    LitWorld world;
     world.scene = materialsScene({matteOf(glm::vec3(0.5f))});
     addSquare(world.geometry, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
     GatherSettings settings;
@@ -375,8 +375,8 @@ TEST(ReferenceGlossyReflection, TheWhiteFurnaceGivesTheAlbedoOfTheLobe) {
 }
 
 TEST(ReferenceGlossyReflection, AMirrorShowsWhatStandsOnTheOtherSide) {
-    NEEDS_EMBREE();
-    World world;
+    GATHER_NEEDS_EMBREE();
+    LitWorld world;
     world.scene = materialsScene({matteOf(glm::vec3(0.5f)), matteOf(glm::vec3(0), {2, 3, 4})});
     addSquare(world.geometry, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
     // The eye stands at +x; a small square where its mirror direction goes.
@@ -404,12 +404,12 @@ struct GatherNoise : testing::Test {
                                 -0.9f + 0.1f * static_cast<float>(i / 20));
         inputs = pointsFacing(points, {0, 1, 0});
     }
-    World world;
+    LitWorld world;
     GatherInputs inputs;
 };
 
 TEST_F(GatherNoise, IsWhatTheNoiseSaysAndShrinks) {
-    NEEDS_EMBREE();
+    GATHER_NEEDS_EMBREE();
     for (const bool shadow : {false, true}) {
         const auto made = [&](int samples, std::uint32_t seed) {
             GatherSettings settings;
@@ -432,7 +432,7 @@ TEST_F(GatherNoise, IsWhatTheNoiseSaysAndShrinks) {
 }
 
 TEST_F(GatherNoise, DoesNotDependOnThreads) {
-    NEEDS_EMBREE();
+    GATHER_NEEDS_EMBREE();
     GatherSettings settings;
     settings.samples = 16;
     settings.threads = 1;
@@ -444,14 +444,14 @@ TEST_F(GatherNoise, DoesNotDependOnThreads) {
 }
 
 TEST(ReferenceGather, EmptyAndDegenerateScenes) {
-    NEEDS_EMBREE();
+    GATHER_NEEDS_EMBREE();
     GatherSettings settings;
     settings.emission = true;
     settings.samples = 1;
-    World empty;
+    LitWorld empty;
     EXPECT_EQ(empty.shadow(pointsFacing({{0, 0, 0}}, {0, 1, 0}), settings).light.at(0, 0, 0), 0.0f);
     EXPECT_EQ(empty.shadow(pointsFacing({{0, 0, 0}}, {0, 1, 0}), settings).visibility.at(0, 0), 1.0f);
-    World flat; // triangles without area that glow, lights without size, points on the lights
+    LitWorld flat; // triangles without area that glow, lights without size, points on the lights
     flat.scene = materialsScene({matteOf(glm::vec3(1), glm::vec3(1))});
     addFace(flat.geometry, {}, {}, 0);
     addFace(flat.geometry, {glm::vec3(-1, 0, 0), {0, 0, 0}, {1, 0, 0}}, {}, 0);

@@ -1,0 +1,51 @@
+// Light that comes straight from the scene's lights, with shadow rays through the reference tracer.
+#pragma once
+#include "reference/area_emitters.h"
+#include "reference/tracer.h"
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace kestrel {
+
+// Shadow rays with what each brings if nothing blocks it, traced together.
+struct ShadowRays {
+    std::vector<TraceRay> rays;
+    std::vector<glm::vec3> light;
+    void clear() {
+        rays.clear();
+        light.clear();
+    }
+    void add(const TraceRay& ray, const glm::vec3& brings) {
+        rays.push_back(ray);
+        light.push_back(brings);
+    }
+    // The sum of what arrives; `unshadowed` is set to the sum of all.
+    glm::vec3 trace(const ReferenceTracer& tracer, glm::vec3* unshadowed = nullptr);
+
+private:
+    std::vector<std::uint8_t> blocked_;
+};
+
+class LightSampler {
+public:
+    // The emitters are the area lights, with `emissiveMeshes` the emissive triangles too (areaEmitters()).
+    LightSampler(std::span<const LightState> lights, const Geometry& geometry, const Scene& scene,
+                 bool emissiveMeshes);
+
+    // Point, spot and directional lights as KHR_lights_punctual has them: inverse square, cone, range window.
+    // A ray each that brings its irradiance over pi, times `scale`. `origin` is `position` moved off the
+    // surface.
+    void addPunctual(ShadowRays& to, const glm::vec3& position, const glm::vec3& origin,
+                     const glm::vec3& normal, const glm::vec3& scale) const;
+    // One point of the area emitters, by `u` uniform in [0, 1)^2.
+    void addArea(ShadowRays& to, const glm::vec3& position, const glm::vec3& origin, const glm::vec3& normal,
+                 const glm::vec3& scale, const glm::vec2& u) const;
+    [[nodiscard]] const std::vector<AreaEmitter>& emitters() const { return emitters_; }
+
+private:
+    std::vector<LightState> punctual_;
+    std::vector<AreaEmitter> emitters_;
+};
+
+} // namespace kestrel

@@ -1,0 +1,64 @@
+#include "gather_pass.h"
+#include "execute/commands.h"
+#include <fmt/format.h>
+
+namespace kestrel {
+
+Declaration declareGather(const Inputs& inputs, const std::vector<std::string>& reads,
+                          const std::vector<std::string>& writes, const std::string& leftOut) {
+    Declaration declaration;
+    const Desc& position = inputs["position"].desc;
+    Step step{
+        .name = "gather", .shaders = {}, .defines = {}, .uses = {}, .modules = {}, .group = "reference"};
+    for (const std::string& port : reads) {
+        step.uses.push_back({.port = port, .access = Access::Host});
+        if (inputs[port].desc.extent != position.extent)
+            declaration.problems.push_back(
+                {port,
+                 fmt::format("is {} but position is {}", describe(inputs[port].desc), describe(position))});
+    }
+    const bool empty = inputs["position"].constant.has_value();
+    for (const std::string& port : writes) {
+        const Format format = port == "result" ? Format::RGBA32F : Format::R32F;
+        declaration.outputs.push_back(
+            {.port = port, .desc = Desc::texture2D(format, position.extent, position.view)});
+        if (empty || !leftOut.empty()) declaration.outputs.back().constant = glm::vec4(0);
+        step.uses.push_back({.port = port, .access = Access::Copy, .write = true});
+    }
+    if (empty || !leftOut.empty()) {
+        declaration.leftOut.push_back({"tracing", empty ? "there is nothing in view" : leftOut});
+        return declaration;
+    }
+    declaration.steps.push_back(std::move(step));
+    declaration.depends =
+        Causes::Geometry | Causes::Transforms | Causes::Materials | Causes::Lights | Causes::Properties;
+    return declaration;
+}
+
+GatherSettings gatherSettings(Commands& commands, int samples, float distance) {
+    GatherSettings settings;
+    settings.samples = samples;
+    if (distance > 0) settings.maximumDistance = distance;
+    settings.seed = commands.frame().seed;
+    settings.progress = [&commands](double fraction) { commands.progress(fraction); };
+    return settings;
+}
+
+GatherInputs gatherInputs(Commands& commands) {
+    return {.position = commands.downloadImage("position"),
+            .normal = commands.downloadImage("normal"),
+            .albedo = {},
+            .material = {}};
+}
+
+void finishGather(Commands& commands, const GatherResult& result) {
+    Image light(result.light.width, result.light.height, 4, 1.0f);
+    for (int y = 0; y < light.height; ++y)
+        for (int x = 0; x < light.width; ++x)
+            for (int k = 0; k < 3; ++k) light.at(x, y, k) = result.light.at(x, y, k);
+    commands.uploadImage("result", light);
+    commands.report("noise", result.noise);
+    commands.report("samples", static_cast<double>(result.samples));
+}
+
+} // namespace kestrel

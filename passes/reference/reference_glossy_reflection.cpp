@@ -1,0 +1,45 @@
+#include "reference_glossy_reflection.h"
+#include "execute/commands.h"
+#include "gather_pass.h"
+
+namespace kestrel {
+
+PassType ReferenceGlossyReflection::type() {
+    return Describe<ReferenceGlossyReflection>(
+               "ReferenceGlossyReflection",
+               "Light reflected by rough surfaces by Embree on the CPU: the truth")
+        .input("position", PortKind::Texture, "Render-space positions of the surfaces")
+        .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .input("albedo", PortKind::Texture, "Their linear base colour")
+        .input("material", PortKind::Texture, "Their roughness, metallic, and in z whether they are unlit")
+        .output("result", PortKind::Texture,
+                "Radiance that leaves towards the eye by the specular lobe; 0 where nothing is")
+        .number("samples", &ReferenceGlossyReflection::samples, 2, 65536, "rays",
+                "Rays a pixel, rounded up to an even number")
+        .number("distance", &ReferenceGlossyReflection::distance, 0, 1e9, "scene units",
+                "How far surfaces count, beyond it a ray meets nothing; 0: any distance")
+        .flag("emission", &ReferenceGlossyReflection::emission,
+              "Surfaces send out their emission too; off where area lights stand for the meshes that glow")
+        .vector("environment", &ReferenceGlossyReflection::environment, 0, 1e9, "radiance",
+                "What arrives where a ray meets nothing");
+}
+
+Declaration ReferenceGlossyReflection::declare(const World&, const Inputs& inputs, const Demand&) const {
+    Declaration declaration = declareGather(inputs, {"position", "normal", "albedo", "material"}, {"result"});
+    declaration.depends |= Causes::Camera | Causes::Cut;
+    return declaration;
+}
+
+void ReferenceGlossyReflection::execute(const Step&, Commands& commands) {
+    GatherSettings settings = gatherSettings(commands, samples, distance);
+    settings.emission = emission;
+    settings.environment = environment;
+    GatherInputs inputs = gatherInputs(commands);
+    inputs.albedo = commands.downloadImage("albedo");
+    inputs.material = commands.downloadImage("material");
+    const ReferenceTracer tracer(commands.geometry(), commands.scene());
+    const GatherScene scene{tracer, commands.geometry(), commands.scene(), commands.lights()};
+    finishGather(commands, gatherGlossyReflection(scene, inputs, commands.frame().cameraState, settings));
+}
+
+} // namespace kestrel

@@ -1,0 +1,43 @@
+#include "reference_indirect_diffuse.h"
+#include "execute/commands.h"
+#include "gather_pass.h"
+
+namespace kestrel {
+
+PassType ReferenceIndirectDiffuse::type() {
+    return Describe<ReferenceIndirectDiffuse>("ReferenceIndirectDiffuse",
+                                              "One bounce of diffuse light by Embree on the CPU: the truth")
+        .input("position", PortKind::Texture, "Render-space positions of the surfaces")
+        .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .output("result", PortKind::Texture,
+                "Cosine-weighted mean of the radiance that arrives (irradiance over pi); 0 where nothing is")
+        .output("weight", PortKind::Texture, "1: all frames count alike")
+        .number("samples", &ReferenceIndirectDiffuse::samples, 2, 65536, "rays",
+                "Rays a pixel, rounded up to an even number")
+        .number("distance", &ReferenceIndirectDiffuse::distance, 0, 1e9, "scene units",
+                "How far surfaces count, beyond it a ray meets nothing; 0: any distance")
+        .flag("emission", &ReferenceIndirectDiffuse::emission,
+              "Surfaces send out their emission too; off where area lights stand for the meshes that glow")
+        .vector("environment", &ReferenceIndirectDiffuse::environment, 0, 1e9, "radiance",
+                "What arrives where a ray meets nothing");
+}
+
+Declaration ReferenceIndirectDiffuse::declare(const World&, const Inputs& inputs, const Demand&) const {
+    Declaration declaration = declareGather(inputs, {"position", "normal"}, {"result"});
+    declaration.outputs.push_back(
+        {.port = "weight",
+         .desc = Desc::texture2D(Format::R32F, inputs["position"].desc.extent, inputs["position"].desc.view),
+         .constant = glm::vec4(1)});
+    return declaration;
+}
+
+void ReferenceIndirectDiffuse::execute(const Step&, Commands& commands) {
+    GatherSettings settings = gatherSettings(commands, samples, distance);
+    settings.emission = emission;
+    settings.environment = environment;
+    const ReferenceTracer tracer(commands.geometry(), commands.scene());
+    const GatherScene scene{tracer, commands.geometry(), commands.scene(), commands.lights()};
+    finishGather(commands, gatherIndirectDiffuse(scene, gatherInputs(commands), settings));
+}
+
+} // namespace kestrel
