@@ -1,0 +1,59 @@
+#include "near_far_tracer.h"
+#include "execute/commands.h"
+#include "shared/near_field.h"
+
+namespace kestrel {
+
+PassType NearFarTracer::type() {
+    return Describe<NearFarTracer>("NearFarTracer",
+                                   "Two tracers: one for what is near along a ray, one beyond")
+        .input("near", PortKind::Tracer, "Who answers up to the reach; it is not let snap")
+        .input("far", PortKind::Tracer, "Who answers beyond")
+        .output("tracer", PortKind::Tracer, "The nearer half's answer; snaps as the far tracer does")
+        .internal("settings", PortKind::Buffer, "The reach (shared/near_field.h)")
+        .number("reach", &NearFarTracer::reach, 0, 1e9, "scene units or radii",
+                "Distance along the ray at which the far tracer takes over; 0: it answers alone")
+        .flag("relative", &NearFarTracer::relative, "The reach is given in radii of the scene's sphere");
+}
+
+Declaration NearFarTracer::declare(const World&, const Inputs& inputs, const Demand& demand) const {
+    Declaration declaration;
+    const Bits near = inputs["near"].desc.gives;
+    const Bits far = inputs["far"].desc.gives;
+    if (reach == 0) {
+        declaration.outputs = {{.port = "tracer", .desc = Desc::module(far), .same = "far"}};
+        declaration.leftOut.push_back({"near tracer", "its reach is 0"});
+        return declaration;
+    }
+    const Bits given = (near & far & gives::Surface) | ((near | far) & gives::Approximate) |
+                       (far & (gives::Snaps | gives::AlwaysSnaps));
+    declaration.outputs = {{.port = "tracer", .desc = Desc::module(given)}};
+    if (!demand.reads("tracer")) return declaration;
+
+    // Both halves are asked for what the consumers take. A half that always snaps is refused by the framework
+    // where nobody bears it, and the near one never bears it.
+    Bits taken =
+        demand.takes("tracer") & (takes::AnyHit | takes::ClosestHit | takes::Surface | takes::BearsSnap);
+    if ((given & gives::Surface) == 0) taken &= ~takes::Surface;
+    declaration.modules.push_back({.port = "tracer",
+                                   .shader = "near_field/near_far.glsl",
+                                   .defines = {},
+                                   .uses = {{.port = "settings", .access = Access::Uniform}},
+                                   .modules = {{"near", taken & ~takes::BearsSnap}, {"far", taken}}});
+    declaration.outputs.push_back(
+        {.port = "settings", .desc = Desc::buffer(sizeof(shared::NearFarSettings))});
+    declaration.steps.push_back({.name = "settings",
+                                 .shaders = {},
+                                 .defines = {},
+                                 .uses = {{.port = "settings", .access = Access::Copy, .write = true}},
+                                 .modules = {}});
+    declaration.depends = Causes::Properties;
+    return declaration;
+}
+
+void NearFarTracer::execute(const Step&, Commands& commands) {
+    const float unit = relative ? commands.facts().sphere.radius : 1.0f;
+    commands.uploadValue("settings", shared::NearFarSettings{reach * unit, 0, 0, 0});
+}
+
+} // namespace kestrel
