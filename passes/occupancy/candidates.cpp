@@ -1,15 +1,16 @@
 #include "candidates.h"
 #include "core/check.h"
 #include "shared/random.h"
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
 
 namespace kestrel {
 
 static_assert(sizeof(shared::RomaDirection) == 48);
 static_assert(offsetof(shared::RomaDirection, spreadYY) == 28);
-static_assert(sizeof(shared::RomaSettings) == 16);
 static_assert(sizeof(shared::RomaRotation) == 48);
 
 glm::dvec3 hemisphereFromSquare(const glm::dvec2& point) {
@@ -60,18 +61,49 @@ std::vector<shared::RomaDirection> romaStrata(int n) {
     return strata;
 }
 
+// `sequence` tells apart the sequences that one stratum has.
+static glm::vec3 drawCandidate(int n, std::uint32_t stratum, std::uint32_t sequence, std::uint32_t sample,
+                               std::uint32_t seed) {
+    const std::uint32_t scramble = shared::pixelSeed({stratum, sequence}, shared::randomCandidates, seed);
+    const glm::dvec2 corner(stratum % static_cast<std::uint32_t>(n), stratum / static_cast<std::uint32_t>(n));
+    const glm::dvec2 u(shared::scrambledSobol(sample, scramble));
+    return glm::normalize(glm::vec3(hemisphereFromSquare((corner + u) / double(n))));
+}
+
 void drawCandidates(std::vector<shared::RomaDirection>& strata, int n, std::uint32_t frame,
                     std::uint32_t seed) {
     KESTREL_CHECK_EQ(strata.size(), static_cast<size_t>(n) * static_cast<size_t>(n));
-    for (int y = 0; y < n; ++y) {
-        for (int x = 0; x < n; ++x) {
-            const auto index = static_cast<std::uint32_t>(y * n + x);
-            const glm::vec2 u =
-                shared::scrambledSobol(frame, shared::pixelSeed({index, 0}, shared::randomCandidates, seed));
-            const glm::dvec3 d = hemisphereFromSquare((glm::dvec2(x, y) + glm::dvec2(u)) / double(n));
-            strata[index].direction = glm::normalize(glm::vec3(d));
-        }
+    for (size_t i = 0; i < strata.size(); ++i)
+        strata[i].direction = drawCandidate(n, static_cast<std::uint32_t>(i), 0, frame, seed);
+}
+
+int renewalStride(int maps) {
+    int stride = std::max(1, static_cast<int>(std::lround(0.618 * maps))); // the golden section
+    while (std::gcd(stride, maps) != 1) ++stride;
+    return stride;
+}
+
+Renewal Candidates::draw(int n, int refresh, bool all, std::uint32_t frame, std::uint32_t seed) {
+    const int maps = n * n;
+    if (n_ != n) {
+        strata_ = romaStrata(n);
+        n_ = n;
+        all = true;
     }
+    if (all || refresh == 0 || refresh >= maps) {
+        drawCandidates(strata_, n, frame, seed);
+        return {0, maps};
+    }
+    // Turns of all frames in a row: a map's turn comes round after as many as there are maps.
+    const auto count = static_cast<std::uint64_t>(maps);
+    const std::uint64_t begin = std::uint64_t{frame} * static_cast<std::uint64_t>(refresh);
+    const auto stride = static_cast<std::uint64_t>(renewalStride(maps));
+    for (std::uint64_t turn = begin; turn < begin + static_cast<std::uint64_t>(refresh); ++turn) {
+        const std::uint64_t stratum = turn % count * stride % count;
+        strata_[stratum].direction = drawCandidate(n, static_cast<std::uint32_t>(stratum), 1,
+                                                   static_cast<std::uint32_t>(turn / count), seed);
+    }
+    return {static_cast<int>(begin % count), refresh};
 }
 
 shared::RomaRotation romaRotation(const glm::vec3& direction) {

@@ -6,6 +6,7 @@ namespace kestrel {
 
 static_assert(sizeof(shared::OccupancyGrid) == 32);
 static_assert(offsetof(shared::OccupancyGrid, inverseCellSize) == 16);
+static_assert(sizeof(shared::OccupancySettings) == 16);
 
 bool isOccupancyResolution(int resolution) {
     return resolution == 32 || resolution == 64 || resolution == 128 || resolution == 256;

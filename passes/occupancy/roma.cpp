@@ -1,38 +1,12 @@
 #include "roma.h"
-#include "candidates.h"
-#include "core/check.h"
 #include "execute/commands.h"
 #include "grid.h"
-#include <algorithm>
+#include "tracing.h"
 #include <bit>
-#include <cstring>
 #include <fmt/format.h>
 
 namespace kestrel {
 namespace {
-
-// A rotated map's column is read as this texel (two of them at 256 cells).
-Format columnFormat(int words) {
-    if (words == 1) return Format::R32UI;
-    return words == 2 ? Format::RG32UI : Format::RGBA32UI;
-}
-
-// Random reads go through image units where the texels fit a texture buffer (measured twice as fast and more
-// on a CPU driver), else through a storage block.
-bool fitsTexels(const Desc& buffer, const Capabilities& capabilities) {
-    const auto texels = buffer.bytes / static_cast<std::uint64_t>(formatInfo(buffer.format).bytes);
-    return texels <= static_cast<std::uint64_t>(capabilities.maxTextureBufferTexels);
-}
-
-// The storage block `Exhausted` of occupancy/roma.glsl.
-struct ExhaustedRays {
-    std::uint32_t rays = 0, exhausted = 0;
-    std::uint32_t begun = 0x52414d45; // tells a buffer that counting began with from one that is new
-};
-
-bool uses(const Step& step, std::string_view port) {
-    return std::any_of(step.uses.begin(), step.uses.end(), [&](const Use& use) { return use.port == port; });
-}
 
 struct Maps {
     int resolution = 0, directions = 0;
@@ -53,7 +27,7 @@ Defines sizes(const Maps& maps) {
             {"DIRECTIONS", std::to_string(maps.directions)}};
 }
 
-Step rotateStep(const Maps& maps, const Desc& base, const Capabilities& capabilities) {
+Step rotateStep(const Maps& maps, const Desc& base, bool inTurn, const Capabilities& capabilities) {
     Step step{.name = "rotate",
               .shaders = {"occupancy/rotate.comp"},
               .defines = sizes(maps),
@@ -64,6 +38,7 @@ Step rotateStep(const Maps& maps, const Desc& base, const Capabilities& capabili
               .group = "generation"};
     step.defines["RESOLUTION_BITS"] =
         std::to_string(std::countr_zero(static_cast<unsigned>(maps.resolution)));
+    if (inTurn) step.defines.emplace("IN_TURN", "1");
     if (!fitsTexels(base, capabilities)) {
         step.defines.emplace("BASE_STORAGE", "1");
         step.uses.front().access = Access::Storage;
@@ -94,20 +69,17 @@ PassType Roma::type() {
                 "How far ray origins are moved off the surface, along its normal")
         .number("skip", &Roma::skip, 0, 8, "cells", "How far rays from a surface go before anything counts")
         .flag("resample", &Roma::resample, "New candidate directions every frame; otherwise those of frame 0")
+        .number("refresh", &Roma::refresh, 0, 256, "maps",
+                "How many maps a frame renews, in turn, while the occupancy map stays as it is; 0: all")
         .flag("count_exhausted", &Roma::countExhausted,
               "Counts the rays that ran out of iterations and reports them with the next frame");
 }
 
 Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
     Declaration declaration;
+    const std::optional<int> resolution = mapResolution(inputs, declaration);
+    if (!resolution) return declaration;
     const Desc& base = inputs["occupancy"].desc;
-    const std::optional<int> resolution = occupancyResolution(base);
-    if (!resolution) {
-        declaration.problems.push_back(
-            {"occupancy",
-             fmt::format("is no occupancy map of 32, 64, 128 or 256 cells an edge: {}", describe(base))});
-        return declaration;
-    }
     const Maps maps = mapsOf(*resolution, angular);
     const std::int64_t limit = world.capabilities.maxStorageBlockBytes;
     if (maps.desc.bytes > static_cast<std::uint64_t>(limit)) {
@@ -121,7 +93,8 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
     if (!demand.reads("tracer")) return declaration;
 
     const auto directions = static_cast<std::uint64_t>(maps.directions);
-    const std::uint64_t block = sizeof(shared::RomaSettings) + sizeof(shared::RomaDirection) * directions;
+    const std::uint64_t block =
+        sizeof(shared::OccupancySettings) + sizeof(shared::RomaDirection) * directions;
     declaration.outputs.push_back({.port = "directions", .desc = Desc::buffer(block)});
     Module tracer{.port = "tracer",
                   .shader = "occupancy/roma.glsl",
@@ -147,25 +120,17 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
         const bool image = fitsTexels(maps.desc, world.capabilities);
         if (!image) tracer.defines["MAPS_STORAGE"] = "1";
         tracer.uses.push_back({.port = "maps", .access = image ? Access::Image : Access::Storage});
-        declaration.outputs.push_back({.port = "maps", .desc = maps.desc});
+        // Renewed in turn: those of earlier frames are traced on.
+        const bool inTurn = resample && refresh > 0 && refresh < maps.directions;
+        declaration.outputs.push_back({.port = "maps", .desc = maps.desc, .keeps = inTurn});
+        if (refresh > 0 && !resample)
+            declaration.leftOut.push_back({"renewing maps in turn", "the candidates stay as they are"});
         declaration.outputs.push_back(
             {.port = "rotations", .desc = Desc::buffer(sizeof(shared::RomaRotation) * directions)});
         candidates.uses.push_back({.port = "rotations", .access = Access::Copy, .write = true});
-        if (countExhausted) {
-            tracer.defines["COUNT_EXHAUSTED"] = "1";
-            tracer.uses.push_back({.port = "exhausted", .access = Access::Storage, .write = true});
-            declaration.outputs.push_back(
-                {.port = "exhausted", .desc = Desc::buffer(sizeof(ExhaustedRays)), .keeps = true});
-            candidates.uses.push_back({.port = "exhausted", .access = Access::Copy, .write = true});
-            declaration.steps.push_back({.name = "report",
-                                         .shaders = {},
-                                         .defines = {},
-                                         .uses = {{.port = "exhausted", .access = Access::Host}},
-                                         .modules = {}});
-            declaration.always = true;
-        }
+        if (countExhausted) exhaustion::declare(declaration, tracer, candidates);
         declaration.steps.push_back(candidates);
-        declaration.steps.push_back(rotateStep(maps, base, world.capabilities));
+        declaration.steps.push_back(rotateStep(maps, base, inTurn, world.capabilities));
     }
     declaration.modules.push_back(std::move(tracer));
     if (resample) declaration.depends = Causes::Frame;
@@ -173,38 +138,32 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
 }
 
 void Roma::execute(const Step& step, Commands& commands) {
-    if (step.name == "report") return reportExhausted(commands);
+    if (step.name == "report") return exhaustion::report(commands);
     if (step.name == "candidates") return upload(step, commands);
     const auto n = static_cast<std::uint32_t>(*occupancyResolution(commands.desc("occupancy")));
-    commands.dispatchOver(n, n, static_cast<std::uint32_t>(angular * angular));
+    if (step.defines.contains("IN_TURN")) {
+        commands.set("firstPlace", renewal_.first);
+        commands.set("placeStride", renewalStride(angular * angular));
+    }
+    commands.dispatchOver(n, n, static_cast<std::uint32_t>(renewal_.count));
 }
 
 void Roma::upload(const Step& step, Commands& commands) {
-    if (strataAngular_ != angular) {
-        strata_ = romaStrata(angular);
-        strataAngular_ = angular;
-    }
-    drawCandidates(strata_, angular, resample ? commands.frame().index : 0, commands.frame().seed);
-    commands.uploadValue("directions", shared::RomaSettings{offset, skip, 0, 0});
-    commands.upload("directions", strata_, sizeof(shared::RomaSettings));
-    const auto n = strata_.size();
-    if (uses(step, "rotations")) {
-        std::vector<shared::RomaRotation> rotations(n);
-        for (size_t i = 0; i < n; ++i) rotations[i] = romaRotation(strata_[i].direction);
+    const bool changed = any(commands.causes() & ~Causes::Frame) ||
+                         any(commands.causes("occupancy") | commands.causes("grid"));
+    const FrameInfo& frame = commands.frame();
+    renewal_ =
+        candidates_.draw(angular, resample ? refresh : 0, changed, resample ? frame.index : 0, frame.seed);
+    commands.uploadValue("directions", shared::OccupancySettings{offset, skip, 0, 0});
+    const std::vector<shared::RomaDirection>& strata = candidates_.strata();
+    commands.upload("directions", strata, sizeof(shared::OccupancySettings));
+    if (usesPort(step, "rotations")) {
+        std::vector<shared::RomaRotation> rotations;
+        for (const shared::RomaDirection& stratum : strata)
+            rotations.push_back(romaRotation(stratum.direction));
         commands.upload("rotations", rotations);
     }
-    if (uses(step, "exhausted")) commands.uploadValue("exhausted", ExhaustedRays{});
-}
-
-// What consumers counted since the maps were made anew: in the last frame.
-void Roma::reportExhausted(Commands& commands) {
-    const std::vector<std::byte> bytes = commands.download("exhausted");
-    ExhaustedRays counted;
-    KESTREL_CHECK_EQ(bytes.size(), sizeof(counted));
-    std::memcpy(&counted, bytes.data(), sizeof(counted));
-    if (counted.begun != ExhaustedRays{}.begun) return; // a new buffer
-    commands.report("rays", counted.rays);
-    commands.report("exhausted rays", counted.exhausted);
+    if (usesPort(step, "exhausted")) exhaustion::clear(commands);
 }
 
 } // namespace kestrel

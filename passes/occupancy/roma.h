@@ -1,10 +1,9 @@
 // Ray-aligned occupancy map array: Zeng et al., "Ray-aligned Occupancy Map Array for Fast Approximate Ray
 // Tracing".
 #pragma once
+#include "candidates.h"
 #include "graph/pass.h"
 #include "graph/registry.h"
-#include "shared/roma.h"
-#include <vector>
 
 namespace kestrel {
 
@@ -24,14 +23,14 @@ public:
     float offset = 0.5f;
     float skip = 2;
     bool resample = true;
+    int refresh = 0;
     bool countExhausted = false;
 
 private:
     void upload(const Step& step, Commands& commands);
-    static void reportExhausted(Commands& commands);
 
-    std::vector<shared::RomaDirection> strata_; // of strataAngular_^2
-    int strataAngular_ = 0;
+    Candidates candidates_;
+    Renewal renewal_; // of this frame
 };
 
 } // namespace kestrel

@@ -26,14 +26,24 @@ layout(std430) writeonly buffer Maps { uvec4 maps[]; };
 
 layout(std140) uniform Rotations { RomaRotation rotations[DIRECTIONS]; };
 
+#ifdef IN_TURN
+// The maps at these places of an order are made anew (Renewal of passes/occupancy/candidates.h).
+uniform int firstPlace;
+uniform int placeStride;
+#define MAP(z) (((firstPlace + (z)) * placeStride) % DIRECTIONS)
+#else
+#define MAP(z) (z)
+#endif
+
 const int whole = romaFractionBits;
 
 void main() {
     ivec3 id = ivec3(gl_GlobalInvocationID);
+    int map = MAP(id.z);
     // Not as a copy of the struct: a CPU driver then takes 1.5 times as long for the whole.
-    ivec3 halfX = rotations[id.z].halfX.xyz;
-    ivec3 halfY = rotations[id.z].halfY.xyz;
-    ivec3 halfZ = rotations[id.z].halfZ.xyz;
+    ivec3 halfX = rotations[map].halfX.xyz;
+    ivec3 halfY = rotations[map].halfY.xyz;
+    ivec3 halfZ = rotations[map].halfZ.xyz;
     ivec3 position = ivec3((RESOLUTION / 2) << whole) + (2 * id.x + 1 - RESOLUTION) * halfX +
                      (2 * id.y + 1 - RESOLUTION) * halfY + (1 - RESOLUTION) * halfZ;
     ivec3 step_ = 2 * halfZ;
@@ -53,7 +63,7 @@ void main() {
         }
         column[w] = bits;
     }
-    int at = (id.z * RESOLUTION + id.y) * RESOLUTION + id.x;
+    int at = (map * RESOLUTION + id.y) * RESOLUTION + id.x;
 #if WORDS == 1
     maps[at] = column[0];
 #elif WORDS == 2

@@ -23,6 +23,14 @@ struct OccupancyGrid {
     uint pad;
 };
 
+// Where rays through a map begin (occupancyBegin() of shaders/lib/occupancy.glsl). 16 bytes of a uniform block (std140).
+struct OccupancySettings {
+    float originOffset; // along the ray's normal, in cells
+    float skip;         // along the ray, in cells: how far rays from a surface go before anything counts
+    float pad1;
+    float pad2;
+};
+
 inline vec3 centredCells(OccupancyGrid grid, vec3 position) { return (position - grid.centre) * grid.inverseCellSize; }
 
 inline vec3 cellsOf(OccupancyGrid grid, vec3 position) { return centredCells(grid, position) + vec3(grid.halfResolution); }
@@ -33,12 +41,23 @@ inline vec3 fromCells(OccupancyGrid grid, vec3 cells) {
 
 inline int occupancyWord(int x, int y, int z, int resolution) { return ((z >> 5) * resolution + y) * resolution + x; }
 
+// Where level `level` of a hierarchy over columns begins: level 0 are the map's N x N columns, row by row, and each coarser
+// level has half as many along x and y.
+inline int occupancyLevelStart(int level, int resolution) {
+    return (4 * resolution * resolution - ((4 * resolution * resolution) >> (2 * level))) / 3;
+}
+
 // The n lowest bits, n from 0 to 32. Two shifts: one of 32 places is undefined in both languages.
 inline uint lowBits(int n) { return ~((0xffffffffu << uint(n >> 1)) << uint(n - (n >> 1))); }
 
 // The bits from cell `first` to cell `last`, both inclusive, of the word that holds cells 32 w to 32 w + 31 of a column.
+// Either may lie outside it. By comparisons of words: half the instructions of one lowBits() an end.
 inline uint columnMask(int first, int last, int w) {
-    return lowBits(clamp(last + 1 - 32 * w, 0, 32)) & ~lowBits(clamp(first - 32 * w, 0, 32));
+    uint upTo = ~(0xfffffffeu << uint(last & 31));
+    uint from = 0xffffffffu << uint(first & 31);
+    uint below = w < (last >> 5) ? 0xffffffffu : (w == (last >> 5) ? upTo : 0u);
+    uint above = w > (first >> 5) ? 0xffffffffu : (w == (first >> 5) ? from : 0u);
+    return below & above;
 }
 
 SHARED_END

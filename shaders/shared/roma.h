@@ -8,7 +8,8 @@
 
 SHARED_BEGIN
 
-// A candidate in the uniform block `Directions` (std140), index y * n + x of its stratum (x, y).
+// A candidate in the uniform block `Directions` (std140), index y * n + x of its stratum (x, y). Ahead of the candidates
+// stand the OccupancySettings.
 struct RomaDirection {
     vec3 direction;   // unit, z >= 0: the z axis of the rotated map
     float spreadXX;   // covariance of the stratum's directions
@@ -18,14 +19,6 @@ struct RomaDirection {
     float spreadXY;
     float spreadXZ;
     float spreadYZ;
-};
-
-// The rest of that block, ahead of the candidates.
-struct RomaSettings {
-    float originOffset; // along the ray's normal, in cells
-    float skip;         // along the ray, in cells: how far rays from a surface go before anything counts
-    float pad1;
-    float pad2;
 };
 
 // A rotated map's axes in the uniform block `Rotations` (std140): half a cell's step along each of them, in the base

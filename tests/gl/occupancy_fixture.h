@@ -6,6 +6,7 @@
 #include "gl/gl_fixture.h"
 #include "passes/occupancy/grid.h"
 #include "passes/occupancy/occupancy_map.h"
+#include "passes/occupancy/occupancy_trace.h"
 #include "passes/occupancy/roma.h"
 #include "passes/ray_effects/ray_query.h"
 #include "shared/ray.h"
@@ -83,11 +84,54 @@ public:
     void execute(const Step&, Commands& commands) override { commands.upload("rays", rays); }
 };
 
+// Hands out an occupancy map that no scene has made.
+class MapSource final : public Pass {
+public:
+    static PassType type() {
+        return Describe<MapSource>("MapSource", "An occupancy map of a test")
+            .output("occupancy", PortKind::Buffer, "The bits")
+            .output("grid", PortKind::Buffer, "Where the cells lie");
+    }
+    static inline std::vector<std::uint32_t> words;
+    static inline shared::OccupancyGrid grid;
+    // Cells of 1/32 around (0, 0, 0), so that planes between them are exact.
+    static void begin(int n) {
+        words.assign(static_cast<size_t>(n) * n * n / 32, 0);
+        grid = {};
+        grid.cellSize = 1.0f / 32;
+        grid.inverseCellSize = 32;
+        grid.halfResolution = static_cast<float>(n) / 2;
+        grid.resolution = static_cast<std::uint32_t>(n);
+    }
+    static void mark(const glm::ivec3& cell) {
+        const int word = shared::occupancyWord(cell.x, cell.y, cell.z, static_cast<int>(grid.resolution));
+        words.at(static_cast<size_t>(word)) |= 1u << (cell.z & 31);
+    }
+    [[nodiscard]] Declaration declare(const World&, const Inputs&, const Demand&) const override {
+        Declaration declaration;
+        declaration.outputs = {{.port = "occupancy", .desc = Desc::buffer(words.size() * 4, Format::R32UI)},
+                               {.port = "grid", .desc = Desc::buffer(sizeof(shared::OccupancyGrid))}};
+        declaration.steps = {{.name = "upload",
+                              .shaders = {},
+                              .defines = {},
+                              .uses = {{.port = "occupancy", .access = Access::Copy, .write = true},
+                                       {.port = "grid", .access = Access::Copy, .write = true}},
+                              .modules = {}}};
+        return declaration;
+    }
+    void execute(const Step&, Commands& commands) override {
+        commands.upload("occupancy", words);
+        commands.uploadValue("grid", grid);
+    }
+};
+
 inline const Registry& registry() {
     static const Registry instance = [] {
         Registry made;
         made.add(OccupancyMap::type());
         made.add(Roma::type());
+        made.add(OccupancyTrace::type());
+        made.add(MapSource::type());
         made.add(RayQuery::type());
         made.add(RaySource::type());
         made.shaderFolders = {std::string(KESTREL_SOURCE_DIR) + "/shaders"};
@@ -160,6 +204,58 @@ inline shared::RayRecord rayRecord(const glm::vec3& origin, const glm::vec3& dir
     record.normal = normal;
     record.flags = 1;
     return record;
+}
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// A ray in the cells of a map (one of several), in double precision.
+struct AlignedRay {
+    int map = 0;
+    glm::dvec3 origin{0}, direction{0};
+    double from = 0, to = 0;
+};
+
+// The ray's way through those of `cells` that it meets for more than `least` cells of its length: entry and
+// exit, sorted.
+inline std::vector<std::pair<double, double>> ways(const std::vector<glm::ivec3>& cells,
+                                                   const AlignedRay& ray, double least) {
+    std::vector<std::pair<double, double>> found;
+    for (const glm::ivec3& corner : cells) {
+        double enter = ray.from, leave = ray.to;
+        const glm::dvec3 cell(corner);
+        for (int k = 0; k < 3; ++k) {
+            const double a = (cell[k] - ray.origin[k]) / ray.direction[k];
+            const double b = (cell[k] + 1 - ray.origin[k]) / ray.direction[k];
+            const bool along = std::abs(ray.direction[k]) < 1e-9;
+            const bool within = ray.origin[k] >= cell[k] && ray.origin[k] <= cell[k] + 1;
+            enter = std::max(enter, along ? (within ? -infinity : infinity) : std::min(a, b));
+            leave = std::min(leave, along ? (within ? infinity : -infinity) : std::max(a, b));
+        }
+        if (leave - enter > least) found.emplace_back(enter, leave);
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+// Rays of all kinds through a map around the unit ball: from inside and outside, along axes, bounded and not.
+inline std::vector<shared::RayRecord> raysAround(int count, float scale, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const auto any = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    std::vector<shared::RayRecord> rays;
+    for (int i = 0; i < count; ++i) {
+        glm::vec3 direction = any();
+        if (i % 8 == 0)
+            direction = glm::vec3(i % 3 == 0, i % 3 == 1, i % 3 == 2) * (i % 16 == 0 ? 1.0f : -1.0f);
+        const float reach = i % 5 == 0 ? 3.0f : 1.0f; // some begin outside
+        float tMin = 0, tMax = std::numeric_limits<float>::infinity();
+        if (i % 3 == 1) tMax = 0.5f * (unit(random) + 1);
+        if (i % 7 == 2) tMax = 0.002f; // within a cell
+        if (i % 4 == 3) tMin = 0.2f * (unit(random) + 1);
+        const glm::vec3 normal = i % 2 == 0 ? glm::normalize(any()) : glm::vec3(0);
+        rays.push_back(rayRecord(reach * scale * any(), direction, scale * tMin, scale * tMax, normal));
+    }
+    return rays;
 }
 
 } // namespace kestrel::test

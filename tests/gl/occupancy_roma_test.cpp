@@ -8,8 +8,6 @@ namespace {
 
 using OccupancyRoma = GlTest;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // What the passes made, read back.
 struct Maps {
     int n = 0;
@@ -34,9 +32,9 @@ Maps mapsOf(Renderer& renderer) {
     maps.rotated = wordsOf(renderer, {"roma", "maps"});
     maps.rotations = as<shared::RomaRotation>(renderer.readBytes({"roma", "rotations"}));
     std::vector<std::byte> block = renderer.readBytes({"roma", "directions"});
-    maps.offset = as<shared::RomaSettings>(block).at(0).originOffset;
-    maps.skip = as<shared::RomaSettings>(block).at(0).skip;
-    block.erase(block.begin(), block.begin() + sizeof(shared::RomaSettings));
+    maps.offset = as<shared::OccupancySettings>(block).at(0).originOffset;
+    maps.skip = as<shared::OccupancySettings>(block).at(0).skip;
+    block.erase(block.begin(), block.begin() + sizeof(shared::OccupancySettings));
     maps.directions = as<shared::RomaDirection>(block);
     return maps;
 }
@@ -55,13 +53,6 @@ bool rotatedBit(const Maps& maps, int map, const glm::ivec3& cell) {
     return isSet(maps.base, maps.n, base);
 }
 
-// A ray in the cells of one rotated map, in double precision.
-struct AlignedRay {
-    int map = 0;
-    glm::dvec3 origin{0}, direction{0};
-    double from = 0, to = 0;
-};
-
 AlignedRay aligned(const Maps& maps, int map, const shared::RayRecord& ray, const glm::vec3& direction) {
     const glm::vec3 w = maps.directions.at(static_cast<size_t>(map)).direction;
     const glm::dvec3 x(shared::romaAxisX(w)), y(shared::romaAxisY(w)), z(w);
@@ -74,28 +65,6 @@ AlignedRay aligned(const Maps& maps, int map, const shared::RayRecord& ray, cons
     const double skip = ray.normal == glm::vec3(0) ? 0.0 : maps.skip;
     return {map, align(centred) + 0.5 * maps.n, align(direction), std::max(ray.tMin / cell, skip),
             ray.tMax / cell};
-}
-
-// The ray's way through those of `cells` that it meets for more than `least` cells of its length: entry and
-// exit, sorted.
-std::vector<std::pair<double, double>> ways(const std::vector<glm::ivec3>& cells, const AlignedRay& ray,
-                                            double least) {
-    std::vector<std::pair<double, double>> found;
-    for (const glm::ivec3& corner : cells) {
-        double enter = ray.from, leave = ray.to;
-        const glm::dvec3 cell(corner);
-        for (int k = 0; k < 3; ++k) {
-            const double a = (cell[k] - ray.origin[k]) / ray.direction[k];
-            const double b = (cell[k] + 1 - ray.origin[k]) / ray.direction[k];
-            const bool along = std::abs(ray.direction[k]) < 1e-9;
-            const bool within = ray.origin[k] >= cell[k] && ray.origin[k] <= cell[k] + 1;
-            enter = std::max(enter, along ? (within ? -infinity : infinity) : std::min(a, b));
-            leave = std::min(leave, along ? (within ? infinity : -infinity) : std::max(a, b));
-        }
-        if (leave - enter > least) found.emplace_back(enter, leave);
-    }
-    std::sort(found.begin(), found.end());
-    return found;
 }
 
 std::vector<glm::ivec3> occupiedCells(const Maps& maps, int map) {
@@ -115,27 +84,6 @@ std::vector<glm::ivec3> columnCells(const Maps& maps, const AlignedRay& ray) {
     for (int z = 0; z < maps.n; ++z)
         if (maps.occupied(ray.map, {at, z})) cells.emplace_back(at, z);
     return cells;
-}
-
-// Rays of all kinds through a map around the unit ball: from inside and outside, along axes, bounded and not.
-std::vector<shared::RayRecord> raysAround(int count, float scale, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> unit(-1, 1);
-    const auto any = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
-    std::vector<shared::RayRecord> rays;
-    for (int i = 0; i < count; ++i) {
-        glm::vec3 direction = any();
-        if (i % 8 == 0)
-            direction = glm::vec3(i % 3 == 0, i % 3 == 1, i % 3 == 2) * (i % 16 == 0 ? 1.0f : -1.0f);
-        const float reach = i % 5 == 0 ? 3.0f : 1.0f; // some begin outside
-        float tMin = 0, tMax = std::numeric_limits<float>::infinity();
-        if (i % 3 == 1) tMax = 0.5f * (unit(random) + 1);
-        if (i % 7 == 2) tMax = 0.002f; // within a cell
-        if (i % 4 == 3) tMin = 0.2f * (unit(random) + 1);
-        const glm::vec3 normal = i % 2 == 0 ? glm::normalize(any()) : glm::vec3(0);
-        rays.push_back(rayRecord(reach * scale * any(), direction, scale * tMin, scale * tMax, normal));
-    }
-    return rays;
 }
 
 int mapOf(const Maps& maps, const glm::vec3& direction) {

@@ -26,18 +26,8 @@ void expectValid(const ProgramRequest& request, ShaderLibrary& library) {
 
 ShaderLibrary shippedShaders() { return ShaderLibrary({std::string(KESTREL_SOURCE_DIR) + "/shaders"}); }
 
-TEST(OccupancyShaders, RotateCompiles) {
-    ShaderLibrary library = shippedShaders();
-    for (const auto& [n, bits] : sizes)
-        for (Defines defines :
-             allCombinations({{"BASE_STORAGE", {undefinedChoice, "1"}}, {"DIRECTIONS", {"4", "256"}}})) {
-            defines["RESOLUTION_BITS"] = bits;
-            expectValid({{"occupancy/rotate.comp"}, sized(defines, n), {}}, library);
-        }
-}
-
-TEST(OccupancyShaders, TheTracerCompilesForEveryConsumer) {
-    ShaderLibrary library = shippedShaders();
+// A consumer of a tracer that asks all there is.
+void addConsumer(ShaderLibrary& library) {
     library.addVirtual("consumer.comp",
                        "#include \"lib/tracer.glsl\"\n"
                        "#include <port:tracer>\n"
@@ -50,6 +40,22 @@ TEST(OccupancyShaders, TheTracerCompilesForEveryConsumer) {
                        "    bool found = tracer_closestHit(ray, hit);\n"
                        "    result[0] = tracer_anyHit(ray) ? ray.weight : found ? hit.t : 0.0;\n"
                        "}\n");
+}
+
+TEST(OccupancyShaders, RotateCompiles) {
+    ShaderLibrary library = shippedShaders();
+    for (const auto& [n, bits] : sizes)
+        for (Defines defines : allCombinations({{"BASE_STORAGE", {undefinedChoice, "1"}},
+                                                {"IN_TURN", {undefinedChoice, "1"}},
+                                                {"DIRECTIONS", {"4", "256"}}})) {
+            defines["RESOLUTION_BITS"] = bits;
+            expectValid({{"occupancy/rotate.comp"}, sized(defines, n), {}}, library);
+        }
+}
+
+TEST(OccupancyShaders, TheTracerCompilesForEveryConsumer) {
+    ShaderLibrary library = shippedShaders();
+    addConsumer(library);
     const Choices choices = {{"TAKES_SNAP", {undefinedChoice, "1"}},
                              {"MAPS_STORAGE", {undefinedChoice, "1"}},
                              {"COUNT_EXHAUSTED", {undefinedChoice, "1"}},
@@ -66,6 +72,29 @@ TEST(OccupancyShaders, TheTracerCompilesForEveryConsumer) {
                 if (*trips) request.defines[trips] = "1";
                 expectValid(request, library);
             }
+}
+
+TEST(OccupancyShaders, WalkingThroughTheMapCompilesForEveryConsumer) {
+    ShaderLibrary library = shippedShaders();
+    addConsumer(library);
+    const Choices choices = {{"METHOD", {"0", "1", "2"}},
+                             {"MAP_STORAGE", {undefinedChoice, "1"}},
+                             {"COUNT_EXHAUSTED", {undefinedChoice, "1"}},
+                             {"EMPTY", {undefinedChoice, "1"}}};
+    for (const auto& [n, bits] : sizes) {
+        for (const Defines& chosen : allCombinations(choices))
+            for (const char* trips : {"", "KESTREL_DEBUG_TRIPS"}) {
+                Defines defines = sized(chosen, n);
+                defines["ITERATIONS"] = "1024";
+                defines["TOP_LEVEL"] = "3";
+                ProgramRequest request{
+                    {"consumer.comp"}, {}, {{"tracer", {"occupancy/occupancy_trace.glsl", defines, {}}}}};
+                if (*trips) request.defines[trips] = "1";
+                expectValid(request, library);
+            }
+        for (const Defines& chosen : allCombinations({{"COARSER", {undefinedChoice, "1"}}}))
+            expectValid({{"occupancy/columns.comp"}, sized(chosen, n), {}}, library);
+    }
 }
 
 const Choices materials = {{"MATERIAL_MASKED", {undefinedChoice, "1"}},

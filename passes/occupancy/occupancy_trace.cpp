@@ -1,0 +1,133 @@
+#include "occupancy_trace.h"
+#include "execute/commands.h"
+#include "grid.h"
+#include "tracing.h"
+#include <bit>
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+// Columns a side where the hierarchy ends.
+constexpr int topColumns = 4;
+
+int topLevel(int resolution) {
+    return std::countr_zero(static_cast<unsigned>(resolution)) -
+           std::countr_zero(static_cast<unsigned>(topColumns));
+}
+
+Desc columnsDesc(int resolution, int levels) {
+    const int words = resolution / 32;
+    const auto columns = static_cast<std::uint64_t>(shared::occupancyLevelStart(levels, resolution));
+    return Desc::buffer(columns * static_cast<std::uint64_t>(words) * 4, columnFormat(words));
+}
+
+} // namespace
+
+PassType OccupancyTrace::type() {
+    return Describe<OccupancyTrace>("OccupancyTrace", "Walks through an occupancy map: 3D or 2D DDA")
+        .input("occupancy", PortKind::Buffer, "Occupancy map")
+        .input("grid", PortKind::Buffer, "Where its cells lie")
+        .output("tracer", PortKind::Tracer, "Traces the exact direction through the map")
+        .internal("columns", PortKind::Buffer, "The map with each column's words together, level by level")
+        .internal("settings", PortKind::Buffer, "Where rays begin (shared/occupancy.h)")
+        .internal("exhausted", PortKind::Buffer, "Rays traced, and those that ran out of iterations")
+        .choice("method", &OccupancyTrace::method, {"dda_3d", "dda_2d"},
+                "From cell to cell, or from column to column, testing many cells of one at once")
+        .flag("mips", &OccupancyTrace::mips,
+              "Column by column over a hierarchy of unions of 2 x 2 columns, leaving empty ones at once")
+        .number("iterations", &OccupancyTrace::iterations, 1, 2048, "steps",
+                "How many cells or columns, of any level, a ray may visit; then it counts as unoccluded")
+        .number("offset", &OccupancyTrace::offset, 0, 8, "cells",
+                "How far ray origins are moved off the surface, along its normal")
+        .number("skip", &OccupancyTrace::skip, 0, 8, "cells",
+                "How far rays from a surface go before anything counts")
+        .flag("count_exhausted", &OccupancyTrace::countExhausted,
+              "Counts the rays that ran out of iterations and reports them with the next frame");
+}
+
+Declaration OccupancyTrace::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
+    Declaration declaration;
+    const std::optional<int> resolution = mapResolution(inputs, declaration);
+    if (!resolution) return declaration;
+    declaration.outputs = {{.port = "tracer", .desc = Desc::module(gives::Approximate)},
+                           {.port = "settings", .desc = Desc::buffer(sizeof(shared::OccupancySettings))}};
+    if (!demand.reads("tracer")) return declaration;
+
+    Module tracer{.port = "tracer",
+                  .shader = "occupancy/occupancy_trace.glsl",
+                  .defines = {{"RESOLUTION", std::to_string(*resolution)},
+                              {"WORDS", std::to_string(*resolution / 32)},
+                              {"ITERATIONS", std::to_string(iterations)}},
+                  .uses = {{.port = "grid", .access = Access::Uniform},
+                           {.port = "settings", .access = Access::Uniform}},
+                  .modules = {}};
+    Step settings{.name = "settings",
+                  .shaders = {},
+                  .defines = {},
+                  .uses = {{.port = "settings", .access = Access::Copy, .write = true}},
+                  .modules = {},
+                  .group = "generation"};
+    if (inputs["occupancy"].constant == glm::vec4(0)) {
+        tracer.defines["EMPTY"] = "1";
+        declaration.leftOut.push_back({"walking", "the occupancy map is empty"});
+        declaration.steps = {settings};
+    } else {
+        if (countExhausted) exhaustion::declare(declaration, tracer, settings);
+        declaration.steps.push_back(settings);
+        if (method == TraceMethod::Dda2d && mips) {
+            declareColumns(world, *resolution, declaration, tracer);
+        } else {
+            tracer.defines["METHOD"] = method == TraceMethod::Dda3d ? "0" : "1";
+            const bool image = fitsTexels(inputs["occupancy"].desc, world.capabilities);
+            if (!image) tracer.defines["MAP_STORAGE"] = "1";
+            tracer.uses.push_back({.port = "occupancy", .access = image ? Access::Image : Access::Storage});
+            if (mips) declaration.leftOut.push_back({"hierarchy", "the walk goes from cell to cell"});
+        }
+    }
+    declaration.modules.push_back(std::move(tracer));
+    return declaration;
+}
+
+void OccupancyTrace::declareColumns(const World& world, int resolution, Declaration& declaration,
+                                    Module& tracer) const {
+    const int top = topLevel(resolution);
+    const Desc desc = columnsDesc(resolution, top + 1);
+    tracer.defines["METHOD"] = "2";
+    tracer.defines["TOP_LEVEL"] = std::to_string(top);
+    const bool image = fitsTexels(desc, world.capabilities);
+    if (!image) tracer.defines["MAP_STORAGE"] = "1";
+    tracer.uses.push_back({.port = "columns", .access = image ? Access::Image : Access::Storage});
+    declaration.outputs.push_back({.port = "columns", .desc = desc});
+    Step columns{
+        .name = "columns",
+        .shaders = {"occupancy/columns.comp"},
+        .defines = {{"RESOLUTION", std::to_string(resolution)}, {"WORDS", std::to_string(resolution / 32)}},
+        .uses = {{.port = "columns", .access = Access::Storage, .write = true}},
+        .modules = {},
+        .group = "generation"};
+    Step coarser = columns;
+    coarser.defines.emplace("COARSER", "1");
+    columns.uses.push_back({.port = "occupancy", .access = Access::Storage});
+    declaration.steps.push_back(std::move(columns));
+    for (int level = 1; level <= top; ++level) {
+        coarser.name = fmt::format("level{}", level);
+        declaration.steps.push_back(coarser);
+    }
+}
+
+void OccupancyTrace::execute(const Step& step, Commands& commands) {
+    if (step.name == "report") return exhaustion::report(commands);
+    if (step.name == "settings") {
+        commands.uploadValue("settings", shared::OccupancySettings{offset, skip, 0, 0});
+        if (usesPort(step, "exhausted")) exhaustion::clear(commands);
+        return;
+    }
+    const auto n = static_cast<std::uint32_t>(*occupancyResolution(commands.desc("occupancy")));
+    if (step.name == "columns") return commands.dispatchOver(n, n);
+    const int level = std::stoi(step.name.substr(5));
+    commands.set("level", level);
+    commands.dispatchOver(n >> level, n >> level);
+}
+
+} // namespace kestrel

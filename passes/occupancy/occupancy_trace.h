@@ -1,0 +1,33 @@
+// Tracing by walking through an occupancy map: what a ray-aligned occupancy map array is measured against.
+#pragma once
+#include "graph/pass.h"
+#include "graph/registry.h"
+
+namespace kestrel {
+
+enum class TraceMethod : std::uint8_t {
+    Dda3d, // from cell to cell (Amanatides and Woo 1987)
+    Dda2d  // from column to column, testing many cells of one at once (Thiedemann et al. 2011)
+};
+
+// Provides `tracer`: any and closest hits of exact directions, each up to a cell off (Hit::error). Both
+// methods find the same cells to the bit. See shaders/occupancy/occupancy_trace.glsl.
+class OccupancyTrace final : public Pass {
+public:
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+    void execute(const Step& step, Commands& commands) override;
+
+    TraceMethod method = TraceMethod::Dda2d;
+    bool mips = true;
+    int iterations = 1024;
+    float offset = 0.5f;
+    float skip = 2;
+    bool countExhausted = false;
+
+private:
+    void declareColumns(const World& world, int resolution, Declaration& declaration, Module& tracer) const;
+};
+
+} // namespace kestrel

@@ -1,0 +1,33 @@
+// What the tracers through occupancy maps share on this side.
+#pragma once
+#include "graph/pass.h"
+#include <optional>
+
+namespace kestrel {
+
+class Commands;
+
+// The texels that a column of this many words (1, 2, 4 or 8) is read by: one of them, two for eight words.
+Format columnFormat(int words);
+
+// Whether random reads of a texel buffer can go through image units (measured twice as fast and more on a CPU
+// driver); otherwise they go through a storage block.
+bool fitsTexels(const Desc& buffer, const Capabilities& capabilities);
+
+// The resolution of the map at input "occupancy". Nothing, and a problem, if it is none.
+std::optional<int> mapResolution(const Inputs& inputs, Declaration& declaration);
+
+// Rays that ran out of iterations, counted by consumers in the storage block `Exhausted` of the module
+// (define COUNT_EXHAUSTED), port "exhausted", and reported with the next frame.
+namespace exhaustion {
+// Adds the port, its uses by the module and by the step that clears it, and the step "report" in front of
+// all.
+void declare(Declaration& declaration, Module& tracer, Step& clears);
+void clear(Commands& commands);  // in the step that clears it
+void report(Commands& commands); // in the step "report": "rays" and "exhausted rays"
+} // namespace exhaustion
+
+// Whether a step uses a port.
+bool usesPort(const Step& step, std::string_view port);
+
+} // namespace kestrel
