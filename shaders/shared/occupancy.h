@@ -47,11 +47,8 @@ inline int occupancyLevelStart(int level, int resolution) {
     return (4 * resolution * resolution - ((4 * resolution * resolution) >> (2 * level))) / 3;
 }
 
-// The n lowest bits, n from 0 to 32. Two shifts: one of 32 places is undefined in both languages.
-inline uint lowBits(int n) { return ~((0xffffffffu << uint(n >> 1)) << uint(n - (n >> 1))); }
-
 // The bits from cell `first` to cell `last`, both inclusive, of the word that holds cells 32 w to 32 w + 31 of a column.
-// Either may lie outside it. By comparisons of words: half the instructions of one lowBits() an end.
+// Either may lie outside it.
 inline uint columnMask(int first, int last, int w) {
     uint upTo = ~(0xfffffffeu << uint(last & 31));
     uint from = 0xffffffffu << uint(first & 31);

@@ -2,6 +2,7 @@
 // maps.
 #include "gl/occupancy_fixture.h"
 #include "passes/occupancy/candidates.h"
+#include <fmt/format.h>
 
 namespace kestrel::test {
 namespace {
@@ -317,6 +318,158 @@ TEST_F(OccupancyRoma, WithoutResamplingTheMapsAreMadeOnce) {
     renderer.set("roma.resample=true");
     renderer.frame();
     EXPECT_TRUE(rotated(renderer.frame()));
+}
+
+std::vector<glm::vec3> candidatesOf(const Maps& maps) {
+    std::vector<glm::vec3> candidates;
+    for (const shared::RomaDirection& stratum : maps.directions) candidates.push_back(stratum.direction);
+    return candidates;
+}
+
+int changes(const std::vector<glm::vec3>& before, const std::vector<glm::vec3>& after) {
+    int count = 0;
+    for (size_t k = 0; k < before.size(); ++k) count += before[k] != after[k];
+    return count;
+}
+
+// Each map, renewed in this frame or not, is the base map turned towards its candidate.
+void expectMapsOfTheirCandidates(const Maps& maps) {
+    std::mt19937 random(7);
+    for (int i = 0; i < 20'000; ++i) {
+        const glm::ivec3 cell(random() % maps.n, random() % maps.n, random() % maps.n);
+        const int map = static_cast<int>(random() % maps.directions.size());
+        ASSERT_EQ(maps.occupied(map, cell), rotatedBit(maps, map, cell)) << "map " << map;
+    }
+    for (size_t k = 0; k < maps.directions.size(); ++k)
+        EXPECT_EQ(maps.rotations[k].halfZ, romaRotation(maps.directions[k].direction).halfZ);
+}
+
+TEST_F(OccupancyRoma, MapsAreRenewedInTurn) {
+    RaySource::rays = raysAround(10, 1, 9);
+    for (const auto& [angular, refresh] : {std::pair(4, 4), std::pair(4, 5), std::pair(3, 2)}) {
+        const int maps = angular * angular, period = (maps + refresh - 1) / refresh;
+        Renderer renderer = romaRenderer(sceneOf(randomTriangles(300, 1)), R"("resolution": 32)",
+                                         fmt::format(R"("angular": {}, "refresh": {})", angular, refresh),
+                                         R"("query": "any", "snap": true)");
+        renderer.frame();
+        expectMapsOfTheirCandidates(mapsOf(renderer));
+        std::vector<glm::vec3> before = candidatesOf(mapsOf(renderer));
+        const std::vector<std::uint32_t> first = mapsOf(renderer).rotated;
+        for (int round = 0; round < 3; ++round) {
+            const std::vector<glm::vec3> begin = before;
+            for (int frame = 0; frame < period; ++frame) {
+                renderer.frame();
+                const Maps now = mapsOf(renderer);
+                expectMapsOfTheirCandidates(now);
+                EXPECT_EQ(changes(before, candidatesOf(now)), refresh);
+                before = candidatesOf(now);
+            }
+            EXPECT_EQ(changes(begin, before), maps) << "after " << period << " frames every map is new";
+        }
+        // A setting that changes, and a map that does, renew all of them.
+        renderer.set("roma.offset=1.25");
+        renderer.frame();
+        EXPECT_EQ(changes(before, candidatesOf(mapsOf(renderer))), maps);
+        before = candidatesOf(mapsOf(renderer));
+        renderer.set("map.method=dominant_axis");
+        renderer.frame();
+        expectMapsOfTheirCandidates(mapsOf(renderer));
+        EXPECT_EQ(changes(before, candidatesOf(mapsOf(renderer))), maps);
+        // From the start: the same again.
+        renderer.set("map.method=three_axis");
+        renderer.restart();
+        renderer.frame();
+        EXPECT_EQ(mapsOf(renderer).rotated, first);
+    }
+}
+
+TEST_F(OccupancyRoma, AMapThatChangesEveryFrameRenewsAll) {
+    RaySource::rays = raysAround(10, 1, 9);
+    Renderer all = romaRenderer(sceneOf(randomTriangles(300, 1)), R"("resolution": 32, "jitter": true)", "",
+                                R"("query": "any", "snap": true)");
+    Renderer turns = romaRenderer(sceneOf(randomTriangles(300, 1)), R"("resolution": 32, "jitter": true)",
+                                  R"("refresh": 3)", R"("query": "any", "snap": true)");
+    for (int frame = 0; frame < 4; ++frame) {
+        all.frame();
+        turns.frame();
+        EXPECT_EQ(mapsOf(all).rotated, mapsOf(turns).rotated);
+        EXPECT_EQ(candidatesOf(mapsOf(all)), candidatesOf(mapsOf(turns)));
+    }
+}
+
+TEST_F(OccupancyRoma, RenewingInTurnIsLeftOutWhereNothingIsResampled) {
+    RaySource::rays = raysAround(10, 1, 9);
+    Renderer renderer = romaRenderer(sceneOf(randomTriangles(20, 2)), R"("resolution": 32)",
+                                     R"("resample": false, "refresh": 3)", R"("query": "any", "snap": true)");
+    renderer.frame();
+    const std::vector<glm::vec3> before = candidatesOf(mapsOf(renderer));
+    renderer.frame();
+    EXPECT_EQ(changes(before, candidatesOf(mapsOf(renderer))), 0);
+    const auto& reasons = renderer.plan().leftOut;
+    EXPECT_TRUE(std::any_of(reasons.begin(), reasons.end(), [](const LeftOut& left) {
+        return left.why == "the candidates stay as they are";
+    }));
+}
+
+// What renewing in turn costs in noise: the variance over time of the visibility that a history of ten frames
+// holds (weight 1/10 for the new frame), per point, averaged. Each frame draws new rays, as ambient occlusion
+// does, so that only a part of the noise comes from the candidates.
+TEST_F(OccupancyRoma, VarianceUnderAHistoryOfTenFrames) {
+    constexpr int points = 1500, warmUp = 40, frames = 200;
+    std::mt19937 place(3);
+    std::normal_distribution<float> normal;
+    const auto unit = [&](std::mt19937& random) {
+        return glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+    };
+    std::vector<glm::vec3> origins, normals;
+    for (int i = 0; i < points; ++i) {
+        origins.push_back(0.6f * unit(place));
+        normals.push_back(unit(place));
+    }
+    RaySource::rays = raysAround(points, 1, 1); // as many as in each frame
+    std::map<int, double> variance;
+    std::map<int, std::unique_ptr<Renderer>> renderers;
+    for (const int refresh : {0, 8, 4, 2})
+        renderers[refresh].reset(new Renderer(
+            romaRenderer(sceneOf(randomTriangles(400, 6)), R"("resolution": 32)",
+                         fmt::format(R"("refresh": {})", refresh), R"("query": "any", "snap": true)")));
+    std::map<int, std::vector<double>> history, sum, squares;
+    for (const auto& [refresh, renderer] : renderers) {
+        history[refresh].assign(points, 0);
+        sum[refresh].assign(points, 0);
+        squares[refresh].assign(points, 0);
+    }
+    std::mt19937 random(5);
+    for (int frame = 0; frame < warmUp + frames; ++frame) {
+        RaySource::rays.clear();
+        for (size_t i = 0; i < points; ++i) // around the normal with density cosine
+            RaySource::rays.push_back(rayRecord(origins[i], normals[i] + 0.999f * unit(random), 0,
+                                                std::numeric_limits<float>::infinity(), normals[i]));
+        for (auto& [refresh, renderer] : renderers) {
+            renderer->frame();
+            const auto hits = as<shared::HitRecord>(renderer->readBytes({"query", "hits"}));
+            for (size_t i = 0; i < points; ++i) {
+                const double visible = std::isinf(hits[i].t) ? 1 : 0;
+                double& held = history[refresh][i];
+                held = frame == 0 ? visible : 0.9 * held + 0.1 * visible;
+                if (frame < warmUp) continue;
+                sum[refresh][i] += held;
+                squares[refresh][i] += held * held;
+            }
+        }
+    }
+    for (const auto& [refresh, total] : sum)
+        for (size_t i = 0; i < points; ++i) {
+            const double mean = total[i] / frames;
+            variance[refresh] += (squares[refresh][i] / frames - mean * mean) / points;
+        }
+    for (const auto& [refresh, value] : variance)
+        fmt::print("refresh {}: variance {:.5f}, {:.2f} of renewing all\n", refresh, value,
+                   value / variance[0]);
+    EXPECT_GT(variance[0], 0);
+    EXPECT_LT(variance[8] / variance[0], 1.1); // measured: 1.03
+    EXPECT_LT(variance[4] / variance[0], 1.2); // 1.12
+    EXPECT_LT(variance[2] / variance[0], 1.4); // 1.27
 }
 
 // Rays that run out of columns are counted, and reported with the next frame.

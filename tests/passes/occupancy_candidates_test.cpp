@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 #include <random>
+#include <set>
 
 namespace kestrel::test {
 namespace {
@@ -189,6 +190,43 @@ TEST(OccupancyCandidates, MeanCosineIsTheMeanWhereAllIsAbove) {
     EXPECT_NEAR(shared::meanCosine(0.0f, 0.04f), width * 3.0f / 16.0f, 1e-6f);
     // Above and below the horizon together: mean(max(0, x)) - mean(max(0, -x)) = mean(x).
     EXPECT_NEAR(shared::meanCosine(0.1f, 0.04f) - shared::meanCosine(-0.1f, 0.04f), 0.1f, 1e-6f);
+}
+
+// In turn each map is drawn once before any is drawn again, neighbours in the order far apart on the
+// hemisphere, and the samples of a stratum are stratified over the times that it is drawn.
+TEST(OccupancyCandidates, RenewalInTurnReachesEveryMap) {
+    for (const int n : {2, 3, 4, 8, 16}) {
+        const int maps = n * n, stride = renewalStride(maps);
+        std::set<int> reached;
+        for (int place = 0; place < maps; ++place) reached.insert(place * stride % maps);
+        EXPECT_EQ(reached.size(), static_cast<size_t>(maps)) << n;
+    }
+    constexpr int n = 4, refresh = 3;
+    Candidates candidates;
+    const Renewal all = candidates.draw(n, refresh, false, 0, 9);
+    EXPECT_EQ(all.count, n * n) << "the first call draws all";
+    std::vector<std::vector<glm::vec2>> samples(n * n);
+    for (std::uint32_t frame = 16; frame < 16 + 16 * n * n / refresh; ++frame) {
+        const Renewal renewal = candidates.draw(n, refresh, false, frame, 9);
+        EXPECT_EQ(renewal.count, refresh);
+        EXPECT_EQ(renewal.first, static_cast<int>(frame * refresh % (n * n)));
+        for (int place = renewal.first; place < renewal.first + renewal.count; ++place) {
+            const int map = place % (n * n) * renewalStride(n * n) % (n * n);
+            const glm::vec3 d = candidates.strata()[static_cast<size_t>(map)].direction;
+            EXPECT_EQ(shared::stratumOf(d, n), map);
+            samples[static_cast<size_t>(map)].push_back(
+                glm::fract(shared::squareFromHemisphere(d) * float(n)));
+        }
+    }
+    for (const auto& drawn : samples) {
+        ASSERT_GE(drawn.size(), 15u);
+        int quarters[4] = {};
+        for (size_t i = 0; i < 12; ++i) ++quarters[int(drawn[i].x * 2) + 2 * int(drawn[i].y * 2)];
+        for (const int count : quarters) EXPECT_NEAR(count, 3, 2);
+    }
+    EXPECT_EQ(candidates.draw(n, 0, false, 3, 9).count, n * n);
+    EXPECT_EQ(candidates.draw(n, refresh, true, 3, 9).count, n * n);
+    EXPECT_EQ(candidates.draw(n, 99, false, 3, 9).count, n * n);
 }
 
 } // namespace

@@ -9,13 +9,6 @@
 namespace kestrel::test {
 namespace {
 
-TEST(OccupancyCells, LowBits) {
-    EXPECT_EQ(shared::lowBits(0), 0u);
-    EXPECT_EQ(shared::lowBits(1), 1u);
-    EXPECT_EQ(shared::lowBits(31), 0x7fffffffu);
-    EXPECT_EQ(shared::lowBits(32), 0xffffffffu);
-}
-
 TEST(OccupancyCells, ColumnMaskHoldsTheCellsFromFirstToLast) {
     for (int first = -1; first <= 256; ++first) {
         for (int last = -1; last <= 256; ++last) {
