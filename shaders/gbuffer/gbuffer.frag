@@ -102,7 +102,7 @@ void main() {
 #else
     vec3 before = v_position;
 #endif
-    vec2 now = gl_FragCoord.xy - depthView.jitter;
+    vec2 now = gl_FragCoord.xy + depthView.jitter; // what the sample at the centre sees stands there without jitter
     vec2 then;
     // What stood behind the eye has no pixel in the last frame: one that is far outside of it.
     bool seen = projectPrevious(depthView, before, then);
