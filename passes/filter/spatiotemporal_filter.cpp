@@ -200,6 +200,7 @@ Step SpatiotemporalFilter::temporalStep(const Inputs& inputs, const Choices& cho
         for (const std::string& port : {choices.kept, std::string("moments"), std::string("geometry")})
             step.uses.push_back({.port = port, .access = Access::Image, .previous = true});
     }
+    if (choices.past && inputs["depth"].desc.view.jitter) step.defines.emplace("SEARCH", "1");
     if (choices.motion) {
         step.defines.emplace("MOTION", "1");
         step.uses.push_back({.port = "motion", .access = Access::Fetch});

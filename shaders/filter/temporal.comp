@@ -80,6 +80,21 @@ void main() {
             sums += w * (imageLoad(previous_moments, inside) - vec4(light, 0.0, 0.0, 0.0));
             share += w;
         }
+#ifdef SEARCH
+        // With jitter a thin surface may have been seen by a neighbour only. Only leaving a loop saves work on a CPU
+        // driver: where the surface was found it ends after the first trip, which then counts nothing.
+        bool found = share > 0.01;
+        ivec2 nearest = ivec2(clamp(floor(past.texel + 0.5), vec2(-2.0), vec2(size) + 1.0));
+        int end = found ? 1 : 9;
+        for (int i = 0; i < end; ++i) {
+            ivec2 texel = nearest + ivec2(i % 3, i / 3) - 1;
+            ivec2 inside = clamp(texel, ivec2(0), size - 1);
+            float w = !found && sameSurface(past, texel, size) ? 1.0 : 0.0;
+            sum += w * (imageLoad(PREVIOUS_HISTORY, inside) - now);
+            sums += w * (imageLoad(previous_moments, inside) - vec4(light, 0.0, 0.0, 0.0));
+            share += w;
+        }
+#endif
         if (share > 0.01) {
             difference = sum / share;
             sums /= share;
