@@ -151,8 +151,9 @@ TEST_F(TemporalAntiAliasing, ALightThatGoesOutIsForgotten) {
 }
 
 TEST_F(TemporalAntiAliasing, AMovingPictureStaysSharp) {
-    // A smooth pattern that moves by a fraction of a pixel; bilinear history would wash it out within the ten
-    // frames.
+    // A wave of 5.2 pixels that moves by half a pixel a frame. Catmull-Rom passes 0.957 of it a frame, so the
+    // mean holds 0.1 / (1 - 0.9 * 0.957) = 0.72 of it: rms 0.079. By linear interpolation it would hold 0.39:
+    // rms 0.17.
     const auto pattern = [](std::uint32_t frame) {
         Image image = uniform(size, 1, 0);
         for (int y = 0; y < image.height; ++y)
@@ -165,7 +166,7 @@ TEST_F(TemporalAntiAliasing, AMovingPictureStaysSharp) {
     Image motion = uniform(size, 2, 0);
     for (size_t i = 0; i < motion.values.size(); i += 2) motion.values[i] = -0.5f;
     given["motion"] = always(motion);
-    EXPECT_LE(difference(resolved(given, 40), pattern(39)).rms, 0.05);
+    EXPECT_LE(difference(resolved(given, 40), pattern(39)).rms, 0.1);
 }
 
 TEST_F(TemporalAntiAliasing, ACutStartsAnew) {
