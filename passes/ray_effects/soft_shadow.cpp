@@ -1,0 +1,166 @@
+#include "soft_shadow.h"
+#include "draw/material_defines.h"
+#include "execute/commands.h"
+#include "shared/emitter.h"
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+
+namespace kestrel {
+namespace {
+
+// See IndirectDiffuse: a loop nest has a limit.
+constexpr int shadowRaysPerStep = 16;
+
+// How many emissive triangles there are is known only once there are triangles; more make the buffer grow.
+constexpr std::uint64_t firstEmissiveTriangles = 1024;
+
+// A pass does not know its own name, so the most that any buffer of this port needed counts.
+std::uint64_t grownEmitters(const World& world) {
+    std::uint64_t most = 0;
+    for (const auto& [port, elements] : world.grown)
+        if (port.ends_with(".emitters")) most = std::max(most, elements);
+    return most;
+}
+
+std::uint64_t emitterCapacity(const World& world, bool emission) {
+    std::uint64_t count = std::uint64_t{world.facts.rectangleLights} + world.facts.sphereLights;
+    if (emission && world.facts.hasEmission) count += std::min(world.facts.triangles, firstEmissiveTriangles);
+    return std::max({std::uint64_t{1}, count, grownEmitters(world)});
+}
+
+shared::EmitterRecord recordOfEmitter(const AreaEmitter& emitter) {
+    shared::EmitterRecord record{};
+    const bool sphere = emitter.kind == AreaEmitter::Kind::Sphere;
+    record.corner = emitter.corner;
+    record.kind = sphere                                        ? shared::emitterSphere
+                  : emitter.kind == AreaEmitter::Kind::Triangle ? shared::emitterTriangle
+                                                                : shared::emitterParallelogram;
+    record.u = emitter.u;
+    record.upper = emitter.upper;
+    record.v = emitter.v;
+    record.probability = emitter.probability;
+    record.radiance = emitter.radiance;
+    record.bothSides = emitter.bothSides ? 1.0f : 0.0f;
+    return record;
+}
+
+} // namespace
+
+PassType SoftShadow::type() {
+    return Describe<SoftShadow>(
+               "SoftShadow",
+               "Light straight from area lights and emissive meshes, by shadow rays through any tracer")
+        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .input("tracer", PortKind::Tracer, "Who answers the visibility queries")
+        .output("result", PortKind::Texture, "Irradiance over pi that arrives; 0 where nothing is")
+        .range(0, std::numeric_limits<double>::infinity())
+        .output("visibility", PortKind::Texture,
+                "How bright the result is over what it would be without shadows; 1 where no light reaches")
+        .range(0, 1)
+        .internal("emitters", PortKind::Buffer, "What shines (shared/emitter.h)")
+        .number("rays", &SoftShadow::rays, 1, 256, "rays",
+                "Rays a pixel and frame, for all emitters together")
+        .flag("emission", &SoftShadow::emission,
+              "Emissive meshes shine too, but for those that only show where an area light is");
+}
+
+Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
+    Declaration declaration;
+    const Desc& depth = inputs["depth"].desc;
+    if (inputs["normal"].desc.extent != depth.extent)
+        declaration.problems.push_back(
+            {"normal",
+             fmt::format("is {} but depth is {}", describe(inputs["normal"].desc), describe(depth))});
+    const bool meshes = emission && world.facts.hasEmission;
+    const bool rectangles = world.facts.rectangleLights > 0, spheres = world.facts.sphereLights > 0;
+    const bool background = inputs["depth"].constant == glm::vec4(0);
+    const bool dark = !meshes && !rectangles && !spheres;
+    Output result{.port = "result", .desc = Desc::texture2D(Format::RGBA32F, depth.extent, depth.view)};
+    Output visibility{.port = "visibility", .desc = Desc::texture2D(Format::R32F, depth.extent, depth.view)};
+    if (background || dark) {
+        result.constant = glm::vec4(0);
+        visibility.constant = glm::vec4(1);
+        declaration.outputs = {std::move(result), std::move(visibility)};
+        declaration.leftOut.push_back(
+            {"shadow rays", background ? "the depth is empty everywhere"
+                            : emission ? "the scene has no area light and no material emits light"
+                                       : "the scene has no area light, and emission is off"});
+        return declaration;
+    }
+    const bool tellsVisibility = demand.reads("visibility");
+    const std::uint64_t capacity = emitterCapacity(world, meshes);
+    const auto limit = static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
+    if (capacity * shared::emitterRecordTexels > limit)
+        declaration.problems.push_back(
+            {"emitters", fmt::format("{} emitters need {} texels in a buffer texture; the limit is {}",
+                                     capacity, capacity * shared::emitterRecordTexels, limit)});
+    declaration.outputs.push_back(std::move(result));
+    if (tellsVisibility) declaration.outputs.push_back(std::move(visibility));
+    declaration.outputs.push_back(
+        {.port = "emitters",
+         .desc = Desc::buffer(capacity * sizeof(shared::EmitterRecord), Format::RGBA32F)});
+    if (!meshes)
+        declaration.leftOut.push_back(
+            {"emissive meshes", emission ? "no material emits light" : "emission is off"});
+    if (!spheres) declaration.leftOut.push_back({"sphere lights", "the scene has none"});
+
+    declaration.steps.push_back({.name = "emitters",
+                                 .shaders = {},
+                                 .defines = {},
+                                 .uses = {{.port = "emitters", .access = Access::Copy, .write = true}},
+                                 .modules = {},
+                                 .group = "generation"});
+    // A proxy's hit may be the light's own surface, which only the distance tells.
+    const bool approximate = (inputs["tracer"].desc.gives & gives::Approximate) != 0;
+    const int count = (rays + shadowRaysPerStep - 1) / shadowRaysPerStep;
+    for (int i = 0; i < count; ++i) {
+        const int first = i * shadowRaysPerStep;
+        Step step{.name = fmt::format("trace{}", i),
+                  .shaders = {"ray_effects/soft_shadow.comp"},
+                  .defines = {{"RAYS", std::to_string(std::min(shadowRaysPerStep, rays - first))},
+                              {"FIRST_RAY", std::to_string(first)},
+                              {"TOTAL_RAYS", std::to_string(rays)}},
+                  .uses = {{.port = "depth", .access = Access::Fetch},
+                           {.port = "normal", .access = Access::Fetch},
+                           {.port = "emitters", .access = Access::Image},
+                           {.port = "result", .access = Access::Image, .write = true}},
+                  .modules = {{"tracer", approximate ? takes::ClosestHit : takes::AnyHit}},
+                  .group = "tracing"};
+        step.defines.merge(materialDefines(world.facts));
+        if (meshes || rectangles) step.defines.emplace("FLAT_EMITTERS", "1");
+        if (spheres) step.defines.emplace("SPHERE_EMITTERS", "1");
+        if (approximate) step.defines.emplace("APPROXIMATE", "1");
+        if (tellsVisibility && i + 1 == count) {
+            step.defines.emplace("VISIBILITY", "1");
+            step.uses.push_back({.port = "visibility", .access = Access::Image, .write = true});
+        }
+        if (i > 0) step.defines.emplace("CONTINUES", "1");
+        if (i + 1 == count) step.defines.emplace("ENDS", "1");
+        declaration.steps.push_back(std::move(step));
+    }
+    declaration.depends = Causes::Frame | Causes::Geometry | Causes::Transforms | Causes::Materials |
+                          Causes::Lights | Causes::Properties;
+    return declaration;
+}
+
+void SoftShadow::execute(const Step& step, Commands& commands) {
+    if (step.name == "emitters") return upload(commands);
+    commands.set("emitterCount", static_cast<std::uint32_t>(emitters_.size()));
+    commands.dispatchOver(commands.desc("result").extent);
+}
+
+void SoftShadow::upload(Commands& commands) {
+    if (any(commands.causes() & ~(Causes::Frame | Causes::Camera)))
+        emitters_ = areaEmitters(commands.lights(), commands.geometry(), commands.scene(), emission);
+    if (emitters_.size() * sizeof(shared::EmitterRecord) > commands.desc("emitters").bytes)
+        return commands.overflow("emitters", emitters_.size());
+    std::vector<shared::EmitterRecord> records;
+    records.reserve(emitters_.size() + 1);
+    for (const AreaEmitter& emitter : emitters_) records.push_back(recordOfEmitter(emitter));
+    if (records.empty()) records.emplace_back(); // it may shine at another time only
+    commands.upload("emitters", records);
+}
+
+} // namespace kestrel

@@ -1,0 +1,29 @@
+// Light straight from area lights and emissive meshes, by shadow rays through any tracer.
+#pragma once
+#include "graph/registry.h"
+#include "reference/area_emitters.h"
+#include <vector>
+
+namespace kestrel {
+
+// `result` is the irradiance over pi that arrives: albedo times it is the diffuse light that leaves. Each ray
+// chooses one emitter by area times luminance, and a point on it: `rays` is for all emitters together,
+// whatever their number. Rectangles and triangles are sampled by area, spheres in the cone that they fill.
+// Directions are never replaced.
+class SoftShadow final : public Pass {
+public:
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+    void execute(const Step& step, Commands& commands) override;
+
+    int rays = 1;
+    bool emission = true;
+
+private:
+    void upload(Commands& commands);
+
+    std::vector<AreaEmitter> emitters_; // as uploaded
+};
+
+} // namespace kestrel
