@@ -1,0 +1,105 @@
+#include "indirect_diffuse.h"
+#include "draw/material_defines.h"
+#include "execute/commands.h"
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+// A step traces at most this many rays a pixel: the rays' loop around a tracer's own loop must stay below the
+// trips after which llvmpipe silently stops a loop nest (65,535).
+constexpr int indirectRaysPerStep = 16;
+
+} // namespace
+
+PassType IndirectDiffuse::type() {
+    return Describe<IndirectDiffuse>("IndirectDiffuse",
+                                     "One bounce of diffuse light by rays through any tracer")
+        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .input("tracer", PortKind::Tracer, "Who answers the closest-hit queries")
+        .input("radiance", PortKind::Radiance, "The light at the ends of the rays")
+        .output("result", PortKind::Texture,
+                "Cosine-weighted mean of the radiance that arrives (irradiance over pi); 0 where nothing is")
+        .range(0, std::numeric_limits<double>::infinity())
+        .output("weight", PortKind::Texture,
+                "How much this frame's result counts in a mean over frames (for snapping tracers); 1 where "
+                "nothing is")
+        .number("rays", &IndirectDiffuse::rays, 1, 256, "rays", "Rays a pixel and frame")
+        .number("distance", &IndirectDiffuse::distance, 0, 1e9, "scene units",
+                "How far surfaces count, beyond it a ray meets nothing; 0: any distance")
+        .flag("snap", &IndirectDiffuse::snap, "Bears that a tracer replaces directions by nearby ones")
+        .choice("estimator", &IndirectDiffuse::estimator, {"paper", "cosine_ratio"},
+                "How replaced directions count: all alike, or by their cosine over the mean cosine of those "
+                "they stand for");
+}
+
+Declaration IndirectDiffuse::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
+    Declaration declaration;
+    const Desc& depth = inputs["depth"].desc;
+    if (inputs["normal"].desc.extent != depth.extent)
+        declaration.problems.push_back(
+            {"normal",
+             fmt::format("is {} but depth is {}", describe(inputs["normal"].desc), describe(depth))});
+    const bool snaps = snap && (inputs["tracer"].desc.gives & (gives::Snaps | gives::AlwaysSnaps)) != 0;
+    const bool background = inputs["depth"].constant == glm::vec4(0);
+    const bool weighted = demand.reads("weight");
+
+    Output result{.port = "result", .desc = Desc::texture2D(Format::RGBA32F, depth.extent, depth.view)};
+    Output weight{.port = "weight", .desc = Desc::texture2D(Format::R32F, depth.extent, depth.view)};
+    if (background) result.constant = glm::vec4(0);
+    if (background || !snaps) weight.constant = glm::vec4(1);
+    declaration.outputs.push_back(result);
+    if (weighted) declaration.outputs.push_back(weight);
+    if (background) {
+        declaration.leftOut.push_back({"tracing", "the depth is empty everywhere"});
+        return declaration;
+    }
+    if (weighted && !snaps)
+        declaration.leftOut.push_back({"weight", "the tracer traces the directions that were asked for"});
+
+    const bool surfaces = (inputs["radiance"].desc.gives & needs::Surface) != 0;
+    if (!surfaces)
+        declaration.leftOut.push_back({"normals and materials of hits", "the radiance needs only positions"});
+    const int count = (rays + indirectRaysPerStep - 1) / indirectRaysPerStep;
+    for (int i = 0; i < count; ++i) {
+        const int first = i * indirectRaysPerStep;
+        Step step{.name = fmt::format("trace{}", i),
+                  .shaders = {"ray_effects/indirect_diffuse.comp"},
+                  .defines = {{"RAYS", std::to_string(std::min(indirectRaysPerStep, rays - first))},
+                              {"FIRST_RAY", std::to_string(first)},
+                              {"TOTAL_RAYS", std::to_string(rays)}},
+                  .uses = {{.port = "depth", .access = Access::Fetch},
+                           {.port = "normal", .access = Access::Image},
+                           {.port = "result", .access = Access::Image, .write = true}},
+                  .modules = {{"tracer", (surfaces ? takes::Surface | takes::ClosestHit : takes::ClosestHit) |
+                                             (snap ? takes::BearsSnap : 0)},
+                              {"radiance", 0}},
+                  .group = "tracing"};
+        step.defines.merge(materialDefines(world.facts));
+        if (surfaces) step.defines.emplace("NEEDS_SURFACE", "1");
+        if (i > 0) step.defines.emplace("CONTINUES", "1");
+        if (i + 1 == count) step.defines.emplace("ENDS", "1");
+        if (snaps) {
+            step.defines.emplace("SNAPS", "1");
+            if (estimator == Estimator::CosineRatio) step.defines.emplace("COSINE_RATIO", "1");
+            // Between steps the sum of weights must live somewhere, also if nobody else reads it.
+            if (weighted || count > 1) {
+                step.defines.emplace("WEIGHT", "1");
+                step.uses.push_back({.port = "weight", .access = Access::Image, .write = true});
+                if (!weighted && i == 0) declaration.outputs.push_back(weight);
+            }
+        }
+        declaration.steps.push_back(std::move(step));
+    }
+    declaration.depends = Causes::Frame;
+    return declaration;
+}
+
+void IndirectDiffuse::execute(const Step&, Commands& commands) {
+    commands.set("maximumDistance", distance);
+    commands.dispatchOver(commands.desc("result").extent);
+}
+
+} // namespace kestrel
