@@ -1,0 +1,86 @@
+#include "glossy_reflection.h"
+#include "draw/material_defines.h"
+#include "execute/commands.h"
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace kestrel {
+namespace {
+
+// See IndirectDiffuse: a loop nest has a limit.
+constexpr int glossyRaysPerStep = 16;
+
+} // namespace
+
+PassType GlossyReflection::type() {
+    return Describe<GlossyReflection>("GlossyReflection",
+                                      "Light reflected by rough surfaces, by rays through any tracer")
+        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .input("albedo", PortKind::Texture, "Their linear base colour")
+        .input("material", PortKind::Texture, "Their roughness, metallic, and in z whether they are unlit")
+        .input("tracer", PortKind::Tracer, "Who answers the closest-hit queries")
+        .input("radiance", PortKind::Radiance, "The light at the ends of the rays")
+        .output("result", PortKind::Texture,
+                "Radiance that leaves towards the eye by the specular lobe; 0 where nothing is")
+        .range(0, std::numeric_limits<double>::infinity())
+        .number("rays", &GlossyReflection::rays, 1, 256, "rays", "Rays a pixel and frame")
+        .number("distance", &GlossyReflection::distance, 0, 1e9, "scene units",
+                "How far surfaces count, beyond it a ray meets nothing; 0: any distance")
+        .number("max_roughness", &GlossyReflection::maxRoughness, 0, 1, "",
+                "Rougher surfaces are not traced: their result is 0");
+}
+
+Declaration GlossyReflection::declare(const World& world, const Inputs& inputs, const Demand&) const {
+    Declaration declaration;
+    const Desc& depth = inputs["depth"].desc;
+    for (const char* port : {"normal", "albedo", "material"})
+        if (inputs[port].desc.extent != depth.extent)
+            declaration.problems.push_back(
+                {port, fmt::format("is {} but depth is {}", describe(inputs[port].desc), describe(depth))});
+    Output result{.port = "result", .desc = Desc::texture2D(Format::RGBA32F, depth.extent, depth.view)};
+    if (inputs["depth"].constant == glm::vec4(0)) {
+        result.constant = glm::vec4(0);
+        declaration.outputs.push_back(std::move(result));
+        declaration.leftOut.push_back({"tracing", "the depth is empty everywhere"});
+        return declaration;
+    }
+    declaration.outputs.push_back(std::move(result));
+
+    const bool surfaces = (inputs["radiance"].desc.gives & needs::Surface) != 0;
+    if (!surfaces)
+        declaration.leftOut.push_back({"normals and materials of hits", "the radiance needs only positions"});
+    const int count = (rays + glossyRaysPerStep - 1) / glossyRaysPerStep;
+    for (int i = 0; i < count; ++i) {
+        const int first = i * glossyRaysPerStep;
+        Step step{
+            .name = fmt::format("trace{}", i),
+            .shaders = {"ray_effects/glossy_reflection.comp"},
+            .defines = {{"RAYS", std::to_string(std::min(glossyRaysPerStep, rays - first))},
+                        {"FIRST_RAY", std::to_string(first)},
+                        {"TOTAL_RAYS", std::to_string(rays)}},
+            .uses = {{.port = "depth", .access = Access::Fetch},
+                     {.port = "normal", .access = Access::Image},
+                     // Read once a pixel: image units are kept for what a tracer reads at random.
+                     {.port = "albedo", .access = Access::Fetch},
+                     {.port = "material", .access = Access::Fetch},
+                     {.port = "result", .access = Access::Image, .write = true}},
+            .modules = {{"tracer", takes::ClosestHit | (surfaces ? takes::Surface : 0)}, {"radiance", 0}},
+            .group = "tracing"};
+        step.defines.merge(materialDefines(world.facts));
+        if (surfaces) step.defines.emplace("NEEDS_SURFACE", "1");
+        if (i > 0) step.defines.emplace("CONTINUES", "1");
+        if (i + 1 == count) step.defines.emplace("ENDS", "1");
+        declaration.steps.push_back(std::move(step));
+    }
+    declaration.depends = Causes::Frame;
+    return declaration;
+}
+
+void GlossyReflection::execute(const Step&, Commands& commands) {
+    commands.set("maximumDistance", distance);
+    commands.set("maximumRoughness", maxRoughness);
+    commands.dispatchOver(commands.desc("result").extent);
+}
+
+} // namespace kestrel
