@@ -14,10 +14,12 @@ struct Part {
 
 constexpr Part compositeParts[] = {
     {"direct", "DIRECT", "Direct light, irradiance over pi", 0},
+    {"area", "AREA", "Direct light of area lights with their shadows, irradiance over pi", 0},
     {"indirect", "INDIRECT", "Indirect light, irradiance over pi", 0},
     {"visibility", "VISIBILITY", "Ambient visibility: multiplies indirect and ambient light", 1},
     {"shadow", "SHADOWED", "Visibility of the lights: multiplies the direct light", 1},
     {"specular", "SPECULAR", "Radiance reflected specularly towards the eye", 0},
+    {"reflection", "REFLECTION", "More of it: what rays along the specular lobe bring", 0},
     {"emission", "EMISSION", "Emitted radiance", 0},
     {"background", "BACKGROUND", "Radiance where nothing is", 0},
     {"material", "MATERIAL", "Roughness, metallic, unlit: metals reflect nothing diffusely, the unlit shine",

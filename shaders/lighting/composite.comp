@@ -1,11 +1,14 @@
-// emission + diffuse albedo (direct shadow + (indirect + ambient) visibility) + specular; each term only where its input is
-// connected. A part's define is the components to read of it: rgb, or rrr of one channel.
+// emission + diffuse albedo (direct shadow + area + (indirect + ambient) visibility) + specular + reflection; each term only
+// where its input is connected. A part's define is the components to read of it: rgb, or rrr of one channel.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(ALBEDO_FORMAT) uniform readonly image2D albedo;
 layout(rgba32f) uniform writeonly image2D result;
 #ifdef DIRECT
 uniform sampler2D direct;
+#endif
+#ifdef AREA
+uniform sampler2D area;
 #endif
 #ifdef INDIRECT
 uniform sampler2D indirect;
@@ -18,6 +21,9 @@ uniform sampler2D shadow;
 #endif
 #ifdef SPECULAR
 uniform sampler2D specular;
+#endif
+#ifdef REFLECTION
+uniform sampler2D reflection;
 #endif
 #ifdef EMISSION
 uniform sampler2D emission;
@@ -56,6 +62,9 @@ void main() {
 #endif
     light += straight;
 #endif
+#ifdef AREA
+    light += texelFetch(area, pixel, 0).AREA;
+#endif
 
     vec3 outgoing = base.rgb * light;
 #ifdef MATERIAL
@@ -64,6 +73,9 @@ void main() {
 #endif
 #ifdef SPECULAR
     outgoing += texelFetch(specular, pixel, 0).SPECULAR;
+#endif
+#ifdef REFLECTION
+    outgoing += texelFetch(reflection, pixel, 0).REFLECTION;
 #endif
 #ifdef MATERIAL
     // glTF: an unlit surface shows its colour as it is.
