@@ -1,5 +1,5 @@
 #include "occupancy_map.h"
-#include "draw/material_defines.h"
+#include "exact_marking.h"
 #include "execute/commands.h"
 #include "grid.h"
 #include "shared/random.h"
@@ -13,9 +13,6 @@ namespace {
 constexpr const char* axisPorts[3] = {"columns_x", "columns_y", "columns_z"};
 constexpr const char* highAxisPorts[3] = {"columns_x_high", "columns_y_high", "columns_z_high"};
 
-// The indirect command and the count in front of the list of large triangles (occupancy/exact.comp).
-constexpr std::uint64_t largeHeader = 16;
-
 bool makesColumns(OccupancyMethod method) {
     return method == OccupancyMethod::LogicOp || method == OccupancyMethod::Interlock ||
            method == OccupancyMethod::FramebufferFetch;
@@ -26,13 +23,6 @@ const char* neededExtension(OccupancyMethod method) {
     if (method == OccupancyMethod::Interlock) return "GL_ARB_fragment_shader_interlock";
     if (method == OccupancyMethod::FramebufferFetch) return "GL_EXT_shader_framebuffer_fetch";
     return nullptr;
-}
-
-// Materials matter to the map only where an alpha test makes holes.
-Defines definesFor(const World& world, int resolution) {
-    Defines defines = world.facts.hasMasked ? materialDefines(world.facts) : Defines{};
-    defines["RESOLUTION"] = std::to_string(resolution);
-    return defines;
 }
 
 const std::vector<TriangleClass> allClasses = {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided,
@@ -102,7 +92,7 @@ Declaration OccupancyMap::declare(const World& world, const Inputs&, const Deman
     else
         declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
     if (!makesColumns(method)) occupancy.clear = glm::vec4(0);
-    std::vector<Step> steps = method == OccupancyMethod::Exact ? exactSteps(world)
+    std::vector<Step> steps = method == OccupancyMethod::Exact ? exactSteps(world, resolution)
                               : makesColumns(method)           ? columnSteps(world)
                                                                : rasterSteps(world);
     for (const Step& step : steps) declareInternals(step, world, declaration);
@@ -115,8 +105,8 @@ void OccupancyMap::declareInternals(const Step& step, const World& world, Declar
     const Extent face{static_cast<std::uint32_t>(resolution), static_cast<std::uint32_t>(resolution), 1};
     for (const Use& use : step.uses) {
         if (!use.write || use.port == "occupancy") continue;
-        const Desc desc = use.port == "large" ? Desc::buffer(largeHeader + 4 * world.facts.triangles)
-                                              : Desc::texture2D(Format::RGBA32UI, face);
+        const Desc desc =
+            use.port == "large" ? largeTrianglesDesc(world) : Desc::texture2D(Format::RGBA32UI, face);
         const bool known = std::any_of(declaration.outputs.begin(), declaration.outputs.end(),
                                        [&](const Output& output) { return output.port == use.port; });
         if (!known) declaration.outputs.push_back({.port = use.port, .desc = desc, .clear = glm::vec4(0)});
@@ -126,7 +116,7 @@ void OccupancyMap::declareInternals(const Step& step, const World& world, Declar
 std::vector<Step> OccupancyMap::rasterSteps(const World& world) const {
     Step step{.name = "rasterize",
               .shaders = {"occupancy/raster.vert", "occupancy/raster.frag"},
-              .defines = definesFor(world, resolution),
+              .defines = markingDefines(world, resolution),
               .uses = {{.port = "grid", .access = Access::Uniform},
                        {.port = "occupancy", .access = Access::Storage, .write = true}},
               .modules = {},
@@ -152,7 +142,7 @@ std::vector<Step> OccupancyMap::columnSteps(const World& world) const {
     for (int axis = 0; axis < 3; ++axis) {
         Step step{.name = fmt::format("rasterize_{}", "xyz"[axis]),
                   .shaders = {"occupancy/raster.vert", "occupancy/raster.frag"},
-                  .defines = definesFor(world, resolution),
+                  .defines = markingDefines(world, resolution),
                   .uses = {{.port = "grid", .access = Access::Uniform}},
                   .modules = {},
                   .group = "generation"};
@@ -170,23 +160,6 @@ std::vector<Step> OccupancyMap::columnSteps(const World& world) const {
     }
     steps.push_back(std::move(merge));
     return steps;
-}
-
-std::vector<Step> OccupancyMap::exactSteps(const World& world) const {
-    Step small{.name = "triangles",
-               .shaders = {"occupancy/exact.comp"},
-               .defines = definesFor(world, resolution),
-               .uses = {{.port = "grid", .access = Access::Uniform},
-                        {.port = "occupancy", .access = Access::Storage, .write = true},
-                        {.port = "large", .access = Access::Storage, .write = true}},
-               .modules = {},
-               .group = "generation"};
-    Step large = small;
-    large.name = "large_triangles";
-    large.defines["LARGE"] = "1";
-    large.uses.back().write = false;
-    large.uses.push_back({.port = "large", .access = Access::Indirect});
-    return {small, large};
 }
 
 void OccupancyMap::execute(const Step& step, Commands& commands) {
@@ -216,15 +189,6 @@ void OccupancyMap::uploadGrid(Commands& commands) const {
         shift = glm::vec3(plane, height.x) - 0.5f;
     }
     commands.uploadValue("grid", occupancyGrid(commands.facts().sphere, resolution, shift));
-}
-
-void OccupancyMap::markTriangles(Commands& commands) {
-    const std::uint32_t triangles = commands.geometry().triangleCount();
-    constexpr std::uint32_t group = 64,
-                            row = 32768; // invocations a group; groups along x, below every device's limit
-    const std::uint32_t groups = std::max(1u, (triangles + group - 1) / group);
-    commands.set("triangleCount", static_cast<int>(triangles));
-    commands.dispatch(std::min(groups, row), (groups + row - 1) / row);
 }
 
 } // namespace kestrel

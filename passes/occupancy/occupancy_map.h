@@ -32,10 +32,8 @@ public:
 private:
     [[nodiscard]] std::vector<Step> rasterSteps(const World& world) const;
     [[nodiscard]] std::vector<Step> columnSteps(const World& world) const;
-    [[nodiscard]] std::vector<Step> exactSteps(const World& world) const;
     void declareInternals(const Step& step, const World& world, Declaration& declaration) const;
     void uploadGrid(Commands& commands) const;
-    static void markTriangles(Commands& commands);
 };
 
 } // namespace kestrel

@@ -1,52 +1,10 @@
 #include "roma.h"
+#include "aligned_maps.h"
 #include "execute/commands.h"
 #include "grid.h"
 #include "tracing.h"
-#include <bit>
-#include <fmt/format.h>
 
 namespace kestrel {
-namespace {
-
-struct Maps {
-    int resolution = 0, directions = 0;
-    Desc desc;
-    [[nodiscard]] int words() const { return resolution / 32; }
-};
-
-Maps mapsOf(int resolution, int angular) {
-    Maps maps{resolution, angular * angular, {}};
-    maps.desc = Desc::buffer(occupancyBytes(resolution) * static_cast<std::uint64_t>(maps.directions),
-                             columnFormat(maps.words()));
-    return maps;
-}
-
-Defines sizes(const Maps& maps) {
-    return {{"RESOLUTION", std::to_string(maps.resolution)},
-            {"WORDS", std::to_string(maps.words())},
-            {"DIRECTIONS", std::to_string(maps.directions)}};
-}
-
-Step rotateStep(const Maps& maps, const Desc& base, bool inTurn, const Capabilities& capabilities) {
-    Step step{.name = "rotate",
-              .shaders = {"occupancy/rotate.comp"},
-              .defines = sizes(maps),
-              .uses = {{.port = "occupancy", .access = Access::Image},
-                       {.port = "rotations", .access = Access::Uniform},
-                       {.port = "maps", .access = Access::Storage, .write = true}},
-              .modules = {},
-              .group = "generation"};
-    step.defines["RESOLUTION_BITS"] =
-        std::to_string(std::countr_zero(static_cast<unsigned>(maps.resolution)));
-    if (inTurn) step.defines.emplace("IN_TURN", "1");
-    if (!fitsTexels(base, capabilities)) {
-        step.defines.emplace("BASE_STORAGE", "1");
-        step.uses.front().access = Access::Storage;
-    }
-    return step;
-}
-
-} // namespace
 
 PassType Roma::type() {
     return Describe<Roma>("Roma",
@@ -80,25 +38,15 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
     const std::optional<int> resolution = mapResolution(inputs, declaration);
     if (!resolution) return declaration;
     const Desc& base = inputs["occupancy"].desc;
-    const Maps maps = mapsOf(*resolution, angular);
-    const std::int64_t limit = world.capabilities.maxStorageBlockBytes;
-    if (maps.desc.bytes > static_cast<std::uint64_t>(limit)) {
-        declaration.problems.push_back(
-            {"tracer",
-             fmt::format("{} maps of {} cells an edge need {} bytes in one storage block; the limit is {}",
-                         maps.directions, maps.resolution, maps.desc.bytes, limit)});
-        return declaration;
-    }
+    const AlignedMaps maps = alignedMaps(*resolution, angular, 1, world.capabilities, declaration);
+    if (!declaration.problems.empty()) return declaration;
     declaration.outputs = {{.port = "tracer", .desc = Desc::module(gives::Snaps | gives::Approximate)}};
     if (!demand.reads("tracer")) return declaration;
 
-    const auto directions = static_cast<std::uint64_t>(maps.directions);
-    const std::uint64_t block =
-        sizeof(shared::OccupancySettings) + sizeof(shared::RomaDirection) * directions;
-    declaration.outputs.push_back({.port = "directions", .desc = Desc::buffer(block)});
+    declaration.outputs.push_back({.port = "directions", .desc = maps.directionsDesc()});
     Module tracer{.port = "tracer",
                   .shader = "occupancy/roma.glsl",
-                  .defines = sizes(maps),
+                  .defines = maps.defines(),
                   .uses = {{.port = "grid", .access = Access::Uniform},
                            {.port = "directions", .access = Access::Uniform}},
                   .modules = {}};
@@ -117,16 +65,13 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
         declaration.leftOut.push_back({"rotated maps", "the occupancy map is empty"});
         declaration.steps = {candidates};
     } else {
-        const bool image = fitsTexels(maps.desc, world.capabilities);
-        if (!image) tracer.defines["MAPS_STORAGE"] = "1";
-        tracer.uses.push_back({.port = "maps", .access = image ? Access::Image : Access::Storage});
+        addMapUses(maps, world.capabilities, tracer);
         // Renewed in turn: those of earlier frames are traced on.
         const bool inTurn = resample && refresh > 0 && refresh < maps.directions;
         declaration.outputs.push_back({.port = "maps", .desc = maps.desc, .keeps = inTurn});
         if (refresh > 0 && !resample)
             declaration.leftOut.push_back({"renewing maps in turn", "the candidates stay as they are"});
-        declaration.outputs.push_back(
-            {.port = "rotations", .desc = Desc::buffer(sizeof(shared::RomaRotation) * directions)});
+        declaration.outputs.push_back({.port = "rotations", .desc = maps.rotationsDesc()});
         candidates.uses.push_back({.port = "rotations", .access = Access::Copy, .write = true});
         if (countExhausted) exhaustion::declare(declaration, tracer, candidates);
         declaration.steps.push_back(candidates);
@@ -140,12 +85,8 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
 void Roma::execute(const Step& step, Commands& commands) {
     if (step.name == "report") return exhaustion::report(commands);
     if (step.name == "candidates") return upload(step, commands);
-    const auto n = static_cast<std::uint32_t>(*occupancyResolution(commands.desc("occupancy")));
-    if (step.defines.contains("IN_TURN")) {
-        commands.set("firstPlace", renewal_.first);
-        commands.set("placeStride", renewalStride(angular * angular));
-    }
-    commands.dispatchOver(n, n, static_cast<std::uint32_t>(renewal_.count));
+    const AlignedMaps maps{*occupancyResolution(commands.desc("occupancy")), angular * angular, 1, {}};
+    dispatchRotation(step, maps, renewal_, commands);
 }
 
 void Roma::upload(const Step& step, Commands& commands) {
@@ -154,15 +95,7 @@ void Roma::upload(const Step& step, Commands& commands) {
     const FrameInfo& frame = commands.frame();
     renewal_ =
         candidates_.draw(angular, resample ? refresh : 0, changed, resample ? frame.index : 0, frame.seed);
-    commands.uploadValue("directions", shared::OccupancySettings{offset, skip, 0, 0});
-    const std::vector<shared::RomaDirection>& strata = candidates_.strata();
-    commands.upload("directions", strata, sizeof(shared::OccupancySettings));
-    if (usesPort(step, "rotations")) {
-        std::vector<shared::RomaRotation> rotations;
-        for (const shared::RomaDirection& stratum : strata)
-            rotations.push_back(romaRotation(stratum.direction));
-        commands.upload("rotations", rotations);
-    }
+    uploadCandidates(step, candidates_, offset, skip, commands);
     if (usesPort(step, "exhausted")) exhaustion::clear(commands);
 }
 

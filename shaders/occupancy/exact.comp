@@ -10,7 +10,17 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+#ifdef LEVELS
+// Several maps one after the other; this step marks one of them.
+layout(std140) uniform Grids { OccupancyGrid grids[LEVELS]; };
+uniform int level;
+#define GRID grids[level]
+#define FIRST_WORD (level * (RESOLUTION * RESOLUTION * RESOLUTION / 32))
+#else
 layout(std140) uniform Grid { OccupancyGrid grid; };
+#define GRID grid
+#define FIRST_WORD 0
+#endif
 layout(std430) buffer Occupancy { uint occupancy[]; };
 // The work groups of the second step (an indirect command), how many triangles are large, and which.
 layout(std430) buffer Large {
@@ -48,8 +58,8 @@ struct Corners {
 
 Corners cornersOf(uint triangle) {
     uvec4 vertices = sceneTriangle(triangle);
-    return Corners(cellsOf(grid, scenePosition(vertices.x)), cellsOf(grid, scenePosition(vertices.y)),
-                   cellsOf(grid, scenePosition(vertices.z)));
+    return Corners(cellsOf(GRID, scenePosition(vertices.x)), cellsOf(GRID, scenePosition(vertices.y)),
+                   cellsOf(GRID, scenePosition(vertices.z)));
 }
 
 void markColumn(uint triangle, Corners corners, TriangleWalk walk, int x, int y) {
@@ -65,7 +75,8 @@ void markColumn(uint triangle, Corners corners, TriangleWalk walk, int x, int y)
 #ifdef MATERIAL_MASKED
         if (!sceneCovers(triangle, weightsOver(a, b, c))) continue;
 #endif
-        atomicOr(occupancy[occupancyWord(cell.x, cell.y, cell.z, RESOLUTION)], 1u << uint(cell.z & 31));
+        int word = FIRST_WORD + occupancyWord(cell.x, cell.y, cell.z, RESOLUTION);
+        atomicOr(occupancy[word], 1u << uint(cell.z & 31));
     }
 }
 

@@ -35,6 +35,16 @@ uniform int placeStride;
 #define MAP(z) (z)
 #endif
 
+#ifdef LEVELS
+// Several base maps one after the other; this step rotates one of them.
+uniform int level;
+#define FIRST_WORD (level * (RESOLUTION * RESOLUTION * WORDS))
+#define FIRST_MAP (level * DIRECTIONS)
+#else
+#define FIRST_WORD 0
+#define FIRST_MAP 0
+#endif
+
 const int whole = romaFractionBits;
 
 void main() {
@@ -56,14 +66,14 @@ void main() {
                 // occupancyWord() by shifts: with multiplications the whole takes 1.4 times as long.
                 int index = ((position.z >> (whole + 5)) << (2 * RESOLUTION_BITS)) |
                             ((position.y >> whole) << RESOLUTION_BITS) | (position.x >> whole);
-                uint word = BASE_WORD(index);
+                uint word = BASE_WORD(FIRST_WORD + index);
                 bits |= ((word >> ((uint(position.z) >> uint(whole)) & 31u)) & 1u) << i;
             }
             position += step_;
         }
         column[w] = bits;
     }
-    int at = (map * RESOLUTION + id.y) * RESOLUTION + id.x;
+    int at = ((FIRST_MAP + map) * RESOLUTION + id.y) * RESOLUTION + id.x;
 #if WORDS == 1
     maps[at] = column[0];
 #elif WORDS == 2

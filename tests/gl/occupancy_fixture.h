@@ -8,6 +8,7 @@
 #include "passes/occupancy/occupancy_map.h"
 #include "passes/occupancy/occupancy_trace.h"
 #include "passes/occupancy/roma.h"
+#include "passes/occupancy/roma_cascade.h"
 #include "passes/ray_effects/ray_query.h"
 #include "shared/ray.h"
 #include <bit>
@@ -130,6 +131,7 @@ inline const Registry& registry() {
         Registry made;
         made.add(OccupancyMap::type());
         made.add(Roma::type());
+        made.add(RomaCascade::type());
         made.add(OccupancyTrace::type());
         made.add(MapSource::type());
         made.add(RayQuery::type());

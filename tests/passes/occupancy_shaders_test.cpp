@@ -47,6 +47,7 @@ TEST(OccupancyShaders, RotateCompiles) {
     for (const auto& [n, bits] : sizes)
         for (Defines defines : allCombinations({{"BASE_STORAGE", {undefinedChoice, "1"}},
                                                 {"IN_TURN", {undefinedChoice, "1"}},
+                                                {"LEVELS", {undefinedChoice, "3"}},
                                                 {"DIRECTIONS", {"4", "256"}}})) {
             defines["RESOLUTION_BITS"] = bits;
             expectValid({{"occupancy/rotate.comp"}, sized(defines, n), {}}, library);
@@ -67,10 +68,12 @@ TEST(OccupancyShaders, TheTracerCompilesForEveryConsumer) {
                 defines["DIRECTIONS"] = "16";
                 defines["ANGULAR"] = "4";
                 defines["ITERATIONS"] = "8";
-                ProgramRequest request{
-                    {"consumer.comp"}, {}, {{"tracer", {"occupancy/roma.glsl", defines, {}}}}};
-                if (*trips) request.defines[trips] = "1";
-                expectValid(request, library);
+                for (const char* file : {"occupancy/roma.glsl", "occupancy/roma_cascade.glsl"}) {
+                    if (std::string_view(file) == "occupancy/roma_cascade.glsl") defines["LEVELS"] = "3";
+                    ProgramRequest request{{"consumer.comp"}, {}, {{"tracer", {file, defines, {}}}}};
+                    if (*trips) request.defines[trips] = "1";
+                    expectValid(request, library);
+                }
             }
 }
 
@@ -122,6 +125,9 @@ TEST(OccupancyShaders, TheMapCompilesByEveryMethod) {
             expectValid({{"occupancy/raster.vert", "occupancy/raster.frag"}, columns, {}}, library);
             large["LARGE"] = "1";
             large["KESTREL_DEBUG_TRIPS"] = exact["KESTREL_DEBUG_TRIPS"] = "1";
+            expectValid({{"occupancy/exact.comp"}, exact, {}}, library);
+            expectValid({{"occupancy/exact.comp"}, large, {}}, library);
+            exact["LEVELS"] = large["LEVELS"] = "3";
             expectValid({{"occupancy/exact.comp"}, exact, {}}, library);
             expectValid({{"occupancy/exact.comp"}, large, {}}, library);
         }

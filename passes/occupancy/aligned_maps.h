@@ -1,0 +1,41 @@
+// Arrays of ray-aligned occupancy maps: their layout, the step that rotates, and what is uploaded for it.
+// Shared by the passes that make such arrays.
+#pragma once
+#include "candidates.h"
+#include "graph/pass.h"
+
+namespace kestrel {
+
+class Commands;
+
+struct AlignedMaps {
+    int resolution = 0, directions = 0;
+    int levels = 1; // base maps one after the other in a buffer, and the arrays made of them likewise
+    Desc desc;      // of the rotated maps
+    [[nodiscard]] int words() const { return resolution / 32; }
+    // The defines RESOLUTION, WORDS and DIRECTIONS of the shaders.
+    [[nodiscard]] Defines defines() const;
+    // Of the uniform block `Directions`.
+    [[nodiscard]] Desc directionsDesc() const;
+    [[nodiscard]] Desc rotationsDesc() const;
+};
+
+// angular^2 maps a level. A problem at port "tracer" if they do not fit into one storage block.
+AlignedMaps alignedMaps(int resolution, int angular, int levels, const Capabilities& capabilities,
+                        Declaration& declaration);
+
+// Rotates "occupancy" (of this description) by "rotations" into "maps". `inTurn`: those of a Renewal.
+Step rotateStep(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
+                const Capabilities& capabilities);
+
+// In the step that rotateStep() made: all maps, or those of the renewal in turn.
+void dispatchRotation(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands);
+
+// Fills "directions" and, where the step writes it, "rotations".
+void uploadCandidates(const Step& step, const Candidates& candidates, float offset, float skip,
+                      Commands& commands);
+
+// The uses and defines by which a module reads "maps" and "directions".
+void addMapUses(const AlignedMaps& maps, const Capabilities& capabilities, Module& tracer);
+
+} // namespace kestrel
