@@ -11,14 +11,24 @@ constexpr int gradientTile = 8; // pixels a side
 
 std::string glslName(Format format) { return std::string(formatInfo(format).name); }
 
-// The texture that iteration `i` reads; two take turns.
+// The records that iteration `i` reads; two take turns.
 std::string filteredPort(int i) { return i % 2 == 0 ? "filtered" : "filtered_again"; }
+std::string filteredBlock(int i) { return i % 2 == 0 ? "Filtered" : "FilteredAgain"; }
+
+// The block with the view that last frame's image of a port was made with.
+std::string previousView(const std::string& port) {
+    return port == "result"       ? "PreviousResultView"
+           : port == "integrated" ? "PreviousIntegratedView"
+                                  : "PreviousSmoothedOnceView";
+}
 
 } // namespace
 
 struct SpatiotemporalFilter::Choices {
     bool past = false, motion = false, weighted = false, gradient = false, filteredHistory = false;
     bool historyLength = false, variance = false;
+    bool texels =
+        true; // records are read as texels: much faster on a CPU driver, but devices limit their number
     int iterations = 0;
     bool oneChannel = true;
     Format format = Format::R32F;    // of what is accumulated and of the result
@@ -29,8 +39,13 @@ struct SpatiotemporalFilter::Choices {
     [[nodiscard]] Defines defines() const {
         Defines defines = {
             {"HISTORY_FORMAT", glslName(format)}, {"FILTERED_FORMAT", glslName(filtered)}, {"MEAN", mean}};
+        defines["FILTERED_TYPE"] = oneChannel ? "vec2" : "vec4";
         if (oneChannel) defines.emplace("ONE_CHANNEL", "1");
+        if (texels) defines.emplace("TEXELS", "1");
         return defines;
+    }
+    [[nodiscard]] Use reads(const std::string& records, bool previous = false) const {
+        return {.port = records, .access = texels ? Access::Image : Access::Storage, .previous = previous};
     }
 };
 
@@ -57,12 +72,12 @@ PassType SpatiotemporalFilter::type() {
         .internal("integrated", PortKind::Texture, "Mean over frames, before it is smoothed in space")
         .internal("smoothed_once", PortKind::Texture,
                   "First iteration's result, where the history is a filtered one")
-        .internal("moments", PortKind::Texture, "Mean and variance of the brightness, frames, sum of weights")
-        .internal("geometry", PortKind::Texture, "Normal and distance along the view axis")
+        .internal("moments", PortKind::Buffer, "Mean and variance of the brightness, frames, sum of weights")
+        .internal("geometry", PortKind::Buffer, "Normal and distance along the view axis")
         .internal("change", PortKind::Texture,
                   "How much each tile has changed, and its usual square difference")
-        .internal("filtered", PortKind::Texture, "Signal and variance between iterations")
-        .internal("filtered_again", PortKind::Texture, "Signal and variance between iterations")
+        .internal("filtered", PortKind::Buffer, "Signal and variance between iterations")
+        .internal("filtered_again", PortKind::Buffer, "Signal and variance between iterations")
         .number("history", &F::history, 1, 1e4, "frames",
                 "Longest history; from then on old frames fade exponentially. 1: this frame alone")
         .number("iterations", &F::iterations, 0, 5, "", "Of the spatial filter; each doubles its reach")
@@ -87,7 +102,8 @@ PassType SpatiotemporalFilter::type() {
               "Goes on from the first iteration's result, as the paper does: less noise, more blur");
 }
 
-Declaration SpatiotemporalFilter::declare(const World&, const Inputs& inputs, const Demand& demand) const {
+Declaration SpatiotemporalFilter::declare(const World& world, const Inputs& inputs,
+                                          const Demand& demand) const {
     Declaration declaration;
     const Inputs::Input& signal = inputs["signal"];
     const FormatInfo& format = formatInfo(signal.desc.format);
@@ -141,14 +157,22 @@ Declaration SpatiotemporalFilter::declare(const World&, const Inputs& inputs, co
     const auto declareOutput = [&](const char* port, Format of, bool keeps = false) {
         declaration.outputs.push_back({.port = port, .desc = texture(of), .keeps = keeps && choices.past});
     };
-    declareOutput("moments", Format::RGBA32F, true);
-    declareOutput("geometry", Format::RGBA32F, true);
+    const std::uint64_t pixels = std::uint64_t{signal.desc.extent.width} * signal.desc.extent.height;
+    choices.texels = pixels <= static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
+    const auto declareRecords = [&](const char* port, Format of, bool keeps = false) {
+        declaration.outputs.push_back(
+            {.port = port,
+             .desc = Desc::buffer(pixels * static_cast<std::uint64_t>(formatInfo(of).bytes), of),
+             .keeps = keeps && choices.past});
+    };
+    declareRecords("moments", Format::RGBA32F, true);
+    declareRecords("geometry", Format::RGBA32F, true);
     result.keeps = choices.past && iterations == 0;
     declaration.outputs.push_back(result);
     if (iterations > 0) {
         declareOutput("integrated", choices.format, !choices.filteredHistory);
-        declareOutput("filtered", choices.filtered);
-        if (iterations > 1) declareOutput("filtered_again", choices.filtered);
+        declareRecords("filtered", choices.filtered);
+        if (iterations > 1) declareRecords("filtered_again", choices.filtered);
     }
     if (choices.filteredHistory) declareOutput("smoothed_once", choices.format, true);
     if (choices.historyLength) declaration.outputs.push_back(length);
@@ -189,16 +213,18 @@ Step SpatiotemporalFilter::temporalStep(const Inputs& inputs, const Choices& cho
                        {.port = "depth", .access = Access::Fetch},
                        {.port = "normal", .access = Access::Fetch},
                        {.port = choices.mean, .access = Access::Image, .write = true},
-                       {.port = "moments", .access = Access::Image, .write = true},
-                       {.port = "geometry", .access = Access::Image, .write = true}},
+                       {.port = "moments", .access = Access::Storage, .write = true},
+                       {.port = "geometry", .access = Access::Storage, .write = true}},
               .modules = {},
               .group = "filter"};
     step.defines["SIGNAL_FORMAT"] = glslName(inputs["signal"].desc.format);
     if (choices.past) {
         step.defines.emplace("PAST", "1");
         step.defines["PREVIOUS_HISTORY"] = "previous_" + choices.kept;
-        for (const std::string& port : {choices.kept, std::string("moments"), std::string("geometry")})
-            step.uses.push_back({.port = port, .access = Access::Image, .previous = true});
+        step.defines["PREVIOUS_VIEW"] = previousView(choices.kept);
+        step.uses.push_back({.port = choices.kept, .access = Access::Image, .previous = true});
+        step.uses.push_back(choices.reads("moments", true));
+        step.uses.push_back(choices.reads("geometry", true));
     }
     if (choices.past && inputs["depth"].desc.view.jitter) step.defines.emplace("SEARCH", "1");
     if (choices.motion) {
@@ -230,13 +256,14 @@ Step SpatiotemporalFilter::gradientStep(const Inputs& inputs, const Choices& cho
                        {.port = "depth", .access = Access::Fetch},
                        {.port = "normal", .access = Access::Fetch},
                        {.port = choices.kept, .access = Access::Image, .previous = true},
-                       {.port = "geometry", .access = Access::Image, .previous = true},
+                       choices.reads("geometry", true),
                        {.port = "change", .access = Access::Image, .previous = true},
                        {.port = "change", .access = Access::Image, .write = true}},
               .modules = {},
               .group = "filter"};
     step.defines["SIGNAL_FORMAT"] = glslName(inputs["signal"].desc.format);
     step.defines["PREVIOUS_HISTORY"] = "previous_" + choices.kept;
+    step.defines["PREVIOUS_VIEW"] = previousView(choices.kept);
     step.defines["TILE"] = std::to_string(gradientTile);
     step.defines.emplace("PAST", "1");
     if (choices.motion) {
@@ -251,13 +278,13 @@ Step SpatiotemporalFilter::varianceStep(const Choices& choices) const {
               .shaders = {"filter/variance.comp"},
               .defines = choices.defines(),
               .uses = {{.port = choices.mean, .access = Access::Image},
-                       {.port = "moments", .access = Access::Image},
-                       {.port = "geometry", .access = Access::Image}},
+                       choices.reads("moments"),
+                       choices.reads("geometry")},
               .modules = {},
               .group = "filter"};
     if (choices.iterations > 0) {
-        step.defines["TARGET"] = filteredPort(0);
-        step.uses.push_back({.port = filteredPort(0), .access = Access::Image, .write = true});
+        step.defines["TARGET"] = filteredBlock(0);
+        step.uses.push_back({.port = filteredPort(0), .access = Access::Storage, .write = true});
     }
     if (choices.filteredHistory) step.defines.emplace("OF_SAMPLES", "1");
     if (choices.variance) {
@@ -270,23 +297,24 @@ Step SpatiotemporalFilter::varianceStep(const Choices& choices) const {
 Step SpatiotemporalFilter::iterationStep(int iteration, const Choices& choices) const {
     const bool isLast = iteration + 1 == choices.iterations;
     const bool isHistory = iteration == 0 && choices.filteredHistory;
-    const std::string source = filteredPort(iteration),
-                      target = isLast ? "result" : filteredPort(iteration + 1);
     Step step{.name = fmt::format("smooth{}", iteration),
               .shaders = {"filter/atrous.comp"},
               .defines = choices.defines(),
-              .uses = {{.port = source, .access = Access::Image},
-                       {.port = "geometry", .access = Access::Image},
-                       {.port = target, .access = Access::Image, .write = true}},
+              .uses = {choices.reads(filteredPort(iteration)), choices.reads("geometry")},
               .modules = {},
               .group = "filter"};
-    step.defines["SOURCE"] = source;
-    step.defines["TARGET"] = target;
-    step.defines["TARGET_FORMAT"] = glslName(isLast ? choices.format : choices.filtered);
+    step.defines["SOURCE"] = filteredPort(iteration);
+    step.defines["SOURCE_BLOCK"] = filteredBlock(iteration);
     step.defines["RADIUS"] = std::to_string(radius);
     step.defines["K1"] = radius == 1 ? "0.5" : "(2.0 / 3.0)"; // binomial weights over that of the centre
     step.defines["K2"] = "(1.0 / 6.0)";
-    if (isLast) step.defines.emplace("LAST", "1");
+    if (isLast) {
+        step.defines.emplace("LAST", "1");
+        step.uses.push_back({.port = "result", .access = Access::Image, .write = true});
+    } else {
+        step.defines["TARGET_BLOCK"] = filteredBlock(iteration + 1);
+        step.uses.push_back({.port = filteredPort(iteration + 1), .access = Access::Storage, .write = true});
+    }
     if (isHistory) {
         step.defines["HISTORY"] = choices.kept;
         step.uses.push_back({.port = choices.kept, .access = Access::Image, .write = true});

@@ -2,46 +2,56 @@
 // pixels apart that stops at edges of depth, normal and brightness. Normals weigh by exp(sigma (cosine - 1)), which for
 // the large exponents in use is the power of the paper without its logarithm. The signal's variance goes along.
 #include "filter/signal.glsl"
+#include "filter/records.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(FILTERED_FORMAT) uniform readonly image2D SOURCE;
-layout(TARGET_FORMAT) uniform writeonly image2D TARGET;
+RECORDS(FILTERED_TYPE, FILTERED_FORMAT, SOURCE, SOURCE_BLOCK);
+#ifdef LAST
+layout(HISTORY_FORMAT) uniform writeonly image2D result;
+#else
+WRITES_RECORDS(FILTERED_TYPE, target, TARGET_BLOCK);
+#endif
 #ifdef HISTORY
 layout(HISTORY_FORMAT) uniform writeonly image2D HISTORY;
 #endif
 #ifdef ALPHA
 layout(HISTORY_FORMAT) uniform readonly image2D MEAN; // its alpha: that of SOURCE holds the variance
 #endif
-layout(rgba32f) uniform readonly image2D geometry;
-layout(std140) uniform GeometryView { ViewData geometryView; };
+RECORDS(vec4, rgba32f, geometry, Geometry);
+layout(std140) uniform ResultView { ViewData resultView; };
 uniform int stride; // pixels between taps
 uniform float sigmaDepth;
 uniform float sigmaNormal;
 uniform float sigmaLuminance;
 
+// Signal and variance: of one channel in two, else the variance is the fourth.
+vec4 sourceAt(ivec2 pixel, ivec2 size) {
 #ifdef ONE_CHANNEL
-float varianceOf(vec4 value) { return value.g; }
+    vec2 record = RECORD(SOURCE, recordIndex(pixel, size)).xy;
+    return vec4(record.x, 0.0, 0.0, record.y);
 #else
-float varianceOf(vec4 value) { return value.a; }
+    return RECORD(SOURCE, recordIndex(pixel, size));
 #endif
+}
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    ivec2 size = imageSize(TARGET);
+    ivec2 size = ivec2(resultView.size);
     if (any(greaterThanEqual(pixel, size))) return;
     ivec2 last = size - 1;
 
-    vec4 centre = imageLoad(SOURCE, pixel);
-    vec4 surface = imageLoad(geometry, pixel);
-    ImagePlane plane = imagePlane(geometryView, mat3(geometryView.view) * surface.xyz, vec2(pixel) + 0.5, surface.w,
-                                  pictureScale(geometryView, surface.w) * sigmaDepth);
+    int record = recordIndex(pixel, size);
+    vec4 centre = sourceAt(pixel, size);
+    vec4 surface = RECORD(geometry, record);
+    ImagePlane plane = imagePlane(resultView, mat3(resultView.view) * surface.xyz, vec2(pixel) + 0.5, surface.w,
+                                  pictureScale(resultView, surface.w) * sigmaDepth);
     // One pixel's estimate is itself noise: a 3 x 3 Gaussian steadies it.
     float variance = 0.0;
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
             float w = 0.25 / float((1 + abs(x)) * (1 + abs(y)));
-            variance += w * varianceOf(imageLoad(SOURCE, clamp(pixel + ivec2(x, y), ivec2(0), last)));
+            variance += w * sourceAt(clamp(pixel + ivec2(x, y), ivec2(0), last), size).a;
         }
     float light = brightness(centre);
     // In the exponent of 2. Where nothing varies, what differs by more than rounding is another value.
@@ -50,13 +60,13 @@ void main() {
 
     // Sums of differences to the centre: a constant comes out to the bit.
     vec4 sum = vec4(0.0);
-    float weights = 1.0, varianceSum = varianceOf(centre);
+    float weights = 1.0, varianceSum = centre.a;
     for (int y = -RADIUS; y <= RADIUS; ++y)
         for (int x = -RADIUS; x <= RADIUS; ++x) {
             ivec2 at = pixel + ivec2(x, y) * stride;
             ivec2 inside = clamp(at, ivec2(0), last);
-            vec4 other = imageLoad(geometry, inside);
-            vec4 value = imageLoad(SOURCE, inside);
+            vec4 other = RECORD(geometry, recordIndex(inside, size));
+            vec4 value = sourceAt(inside, size);
             vec4 d = value - centre;
             float off = abs(planeDistance(plane, vec2(at) + 0.5, other.w)) + sigmaNormal * (1.0 - dot(other.xyz, surface.xyz));
             float power = off * e + abs(brightness(d)) * scale;
@@ -66,7 +76,7 @@ void main() {
             float w = counts ? kernel * exp2(-min(power, 120.0)) : 0.0;
             sum += w * d;
             weights += w;
-            varianceSum += w * w * varianceOf(value);
+            varianceSum += w * w * value.a;
         }
     bool nothing = surface.w == 0.0;
     vec4 made = nothing ? centre : centre + sum / weights;
@@ -80,10 +90,10 @@ void main() {
     imageStore(HISTORY, pixel, vec4(made.rgb, alpha));
 #endif
 #ifdef LAST
-    imageStore(TARGET, pixel, vec4(made.rgb, alpha));
+    imageStore(result, pixel, vec4(made.rgb, alpha));
 #elif defined(ONE_CHANNEL)
-    imageStore(TARGET, pixel, vec4(made.r, left, 0.0, 0.0));
+    target[record] = vec2(made.r, left);
 #else
-    imageStore(TARGET, pixel, vec4(made.rgb, left));
+    target[record] = vec4(made.rgb, left);
 #endif
 }

@@ -1,6 +1,7 @@
 // Finding a surface in the last frame: where it was, and whether what was seen there is the same surface.
-// A texel of `geometry`: unit normal in render space, distance along the view axis (0: nothing there).
+// A record of `geometry`: unit normal in render space, distance along the view axis (0: nothing there).
 #include "filter/signal.glsl"
+#include "filter/records.glsl"
 
 layout(std140) uniform DepthView { ViewData depthView; };
 uniform sampler2D depth;
@@ -15,8 +16,8 @@ vec4 geometryAt(ivec2 pixel) {
 }
 
 #ifdef PAST
-layout(std140) uniform PreviousGeometryView { ViewData previousGeometryView; };
-layout(rgba32f) uniform readonly image2D previous_geometry;
+layout(std140) uniform PREVIOUS_VIEW { ViewData previousView; };
+RECORDS(vec4, rgba32f, previous_geometry, PreviousGeometry);
 #ifdef MOTION
 uniform sampler2D motion;
 #endif
@@ -39,22 +40,22 @@ Past pastOf(ivec2 pixel, vec4 surface) {
 #endif
     vec3 eye = eyePositionAt(depthView, vec2(pixel) + 0.5, surface.w);
     vec3 position = (depthView.inverseView * vec4(eye, 1.0)).xyz;
-    float before = max(-(previousGeometryView.view * vec4(position, 1.0)).z, 0.0);
+    float before = max(-(previousView.view * vec4(position, 1.0)).z, 0.0);
 #ifdef MOTION
     // The images' samples stand off the pixel's centre by each frame's own jitter.
-    vec2 at = past.texel + 0.5 + depthView.jitter - previousGeometryView.jitter;
+    vec2 at = past.texel + 0.5 + depthView.jitter - previousView.jitter;
 #else
     vec2 at = past.texel + 0.5;
 #endif
     past.normal = surface.xyz;
-    vec3 eyeNormal = mat3(previousGeometryView.view) * surface.xyz;
-    past.plane = imagePlane(previousGeometryView, eyeNormal, at, before, pictureScale(previousGeometryView, before));
+    vec3 eyeNormal = mat3(previousView.view) * surface.xyz;
+    past.plane = imagePlane(previousView, eyeNormal, at, before, pictureScale(previousView, before));
     return past;
 }
 
 // Whether a texel of the last frame shows the same surface.
 bool sameSurface(Past past, ivec2 texel, ivec2 size) {
-    vec4 there = imageLoad(previous_geometry, clamp(texel, ivec2(0), size - 1));
+    vec4 there = RECORD(previous_geometry, recordIndex(clamp(texel, ivec2(0), size - 1), size));
     bool inside = all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, size));
     // Comparisons with what is not a number (a surface at the eye has no scale) are false.
     return inside && there.w > 0.0 && dot(there.xyz, past.normal) >= normalTolerance &&

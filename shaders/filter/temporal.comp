@@ -8,12 +8,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(SIGNAL_FORMAT) uniform readonly image2D signal;
 layout(HISTORY_FORMAT) uniform writeonly image2D MEAN;
 // Mean and variance of the brightness, frames in them, sum of their weights.
-layout(rgba32f) uniform writeonly image2D moments;
+WRITES_RECORDS(vec4, moments, Moments);
 #ifdef PAST
 layout(HISTORY_FORMAT) uniform readonly image2D PREVIOUS_HISTORY;
-layout(rgba32f) uniform readonly image2D previous_moments;
+RECORDS(vec4, rgba32f, previous_moments, PreviousMoments);
 #endif
-layout(rgba32f) uniform writeonly image2D geometry;
+WRITES_RECORDS(vec4, geometry, Geometry);
 #ifdef WEIGHTED
 uniform sampler2D weight;
 #endif
@@ -50,7 +50,8 @@ void main() {
     vec4 now = imageLoad(signal, pixel);
     float light = brightness(now);
     vec4 surface = geometryAt(pixel);
-    imageStore(geometry, pixel, surface);
+    int record = recordIndex(pixel, size);
+    geometry[record] = surface;
 
     vec4 difference = vec4(0.0); // history - now
     vec2 momentsBefore = vec2(light, 0.0);
@@ -77,7 +78,7 @@ void main() {
             ivec2 inside = clamp(texel, ivec2(0), size - 1);
             float w = sameSurface(past, texel, size) ? side.x * side.y : 0.0;
             sum += w * (imageLoad(PREVIOUS_HISTORY, inside) - now);
-            sums += w * (imageLoad(previous_moments, inside) - vec4(light, 0.0, 0.0, 0.0));
+            sums += w * (RECORD(previous_moments, recordIndex(inside, size)) - vec4(light, 0.0, 0.0, 0.0));
             share += w;
         }
 #ifdef SEARCH
@@ -91,7 +92,7 @@ void main() {
             ivec2 inside = clamp(texel, ivec2(0), size - 1);
             float w = !found && sameSurface(past, texel, size) ? 1.0 : 0.0;
             sum += w * (imageLoad(PREVIOUS_HISTORY, inside) - now);
-            sums += w * (imageLoad(previous_moments, inside) - vec4(light, 0.0, 0.0, 0.0));
+            sums += w * (RECORD(previous_moments, recordIndex(inside, size)) - vec4(light, 0.0, 0.0, 0.0));
             share += w;
         }
 #endif
@@ -130,7 +131,7 @@ void main() {
     imageStore(MEAN, pixel, nothing ? now : now + (1.0 - fresh) * difference);
     float step = light - momentsBefore.x;
     vec4 made = vec4(momentsBefore.x + fresh * step, (1.0 - fresh) * (momentsBefore.y + fresh * step * step), count, total);
-    imageStore(moments, pixel, nothing ? vec4(light, 0.0, 0.0, 0.0) : made);
+    moments[record] = nothing ? vec4(light, 0.0, 0.0, 0.0) : made;
 #ifdef HISTORY_LENGTH
     imageStore(history_length, pixel, vec4(nothing ? 0.0 : count));
 #endif

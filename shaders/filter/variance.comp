@@ -1,15 +1,16 @@
 // The variance that guides the spatial filter (SVGF, section 4.2): of the history where it is long enough to tell, else of the
 // 7 x 7 pixels around on the same surface.
 #include "filter/signal.glsl"
+#include "filter/records.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(HISTORY_FORMAT) uniform readonly image2D MEAN;
-layout(rgba32f) uniform readonly image2D moments;
-layout(rgba32f) uniform readonly image2D geometry;
-layout(std140) uniform GeometryView { ViewData geometryView; };
+RECORDS(vec4, rgba32f, moments, Moments);
+RECORDS(vec4, rgba32f, geometry, Geometry);
+layout(std140) uniform ResultView { ViewData resultView; };
 #ifdef TARGET
-layout(FILTERED_FORMAT) uniform writeonly image2D TARGET; // what the first iteration reads
+WRITES_RECORDS(FILTERED_TYPE, filtered, TARGET); // what the first iteration reads
 #endif
 #ifdef VARIANCE
 layout(r32f) uniform writeonly image2D variance;
@@ -23,11 +24,12 @@ void main() {
     ivec2 last = size - 1;
 
     vec4 centre = imageLoad(MEAN, pixel);
-    vec4 moment = imageLoad(moments, pixel);
-    vec4 surface = imageLoad(geometry, pixel);
+    int record = recordIndex(pixel, size);
+    vec4 moment = RECORD(moments, record);
+    vec4 surface = RECORD(geometry, record);
     float light = brightness(centre);
-    ImagePlane plane = imagePlane(geometryView, mat3(geometryView.view) * surface.xyz, vec2(pixel) + 0.5, surface.w,
-                                  pictureScale(geometryView, surface.w) * sigmaDepth);
+    ImagePlane plane = imagePlane(resultView, mat3(resultView.view) * surface.xyz, vec2(pixel) + 0.5, surface.w,
+                                  pictureScale(resultView, surface.w) * sigmaDepth);
     // The loop ends at once where nothing is to be estimated: leaving a loop is all that saves work on a CPU driver.
     bool isShort = surface.w > 0.0 && moment.z < 4.0;
     float weights = 1.0, sum = 0.0, squares = 0.0;
@@ -35,7 +37,7 @@ void main() {
     for (int i = 0; i < end; ++i) {
         ivec2 at = pixel + ivec2(i % 7, i / 7) - 3;
         ivec2 inside = clamp(at, ivec2(0), last);
-        vec4 other = imageLoad(geometry, inside);
+        vec4 other = RECORD(geometry, recordIndex(inside, size));
         bool counts = at == inside && other.w > 0.0 && at != pixel && dot(other.xyz, surface.xyz) > 0.9 &&
                       abs(planeDistance(plane, vec2(at) + 0.5, other.w)) < 1.0;
         float d = counts ? brightness(imageLoad(MEAN, inside)) - light : 0.0;
@@ -57,9 +59,9 @@ void main() {
     float estimate = surface.w == 0.0 ? 0.0 : isShort ? around : over;
 #ifdef TARGET
 #ifdef ONE_CHANNEL
-    imageStore(TARGET, pixel, vec4(centre.r, estimate, 0.0, 0.0));
+    filtered[record] = vec2(centre.r, estimate);
 #else
-    imageStore(TARGET, pixel, vec4(centre.rgb, estimate));
+    filtered[record] = vec4(centre.rgb, estimate);
 #endif
 #endif
 #ifdef VARIANCE
