@@ -41,6 +41,8 @@ shared::OccupancyGrid occupancyGrid(const Sphere& sphere, int resolution, const 
     grid.inverseCellSize = 1 / cell;
     grid.halfResolution = static_cast<float>(resolution) / 2;
     grid.resolution = static_cast<std::uint32_t>(resolution);
+    // From a surface to the farthest point of a cell that it touches: a diagonal, and some rounding.
+    grid.reach = static_cast<float>(resolution) / 2 - occupancyMargin + glm::length(jitter) + 1.75f;
     return grid;
 }
 

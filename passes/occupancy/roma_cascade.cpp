@@ -20,6 +20,7 @@ std::vector<shared::OccupancyGrid> cascadeGrids(const Sphere& sphere, const glm:
         shared::OccupancyGrid& grid = grids[i] = grids[i + 1];
         grid.cellSize *= ratio;
         grid.inverseCellSize = 1 / grid.cellSize;
+        grid.reach = 0; // the scene goes on beyond the cube
         grid.centre = glm::round(camera * grid.inverseCellSize) * grid.cellSize;
     }
     return grids;

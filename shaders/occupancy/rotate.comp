@@ -3,6 +3,10 @@
 //
 // The position is stepped in fixed-point integers. Against floats this measures 1.4 to 1.7 times faster on a CPU driver (no
 // rounding, no conversion; one mask tells whether all three coordinates lie inside), and the bits are the same everywhere.
+//
+// Only the part of a column that lies within reach of occupied cells is stepped through, in parts of `stride` steps: a
+// scene's map is empty outside a sphere, which fills half of the turned cube. That measures 1.1 to 1.3 times faster again;
+// parts of a constant number of steps, because a bound that is computed costs as much where it saves nothing.
 #include "shared/occupancy.h"
 #include "shared/roma.h"
 
@@ -37,15 +41,32 @@ uniform int placeStride;
 
 #ifdef LEVELS
 // Several base maps one after the other; this step rotates one of them.
+layout(std140) uniform Grids { OccupancyGrid grids[LEVELS]; };
 uniform int level;
+#define REACH grids[level].reach
 #define FIRST_WORD (level * (RESOLUTION * RESOLUTION * WORDS))
 #define FIRST_MAP (level * DIRECTIONS)
 #else
+layout(std140) uniform Grid { OccupancyGrid grid; };
+#define REACH grid.reach
 #define FIRST_WORD 0
 #define FIRST_MAP 0
 #endif
 
 const int whole = romaFractionBits;
+
+const int strideBits = 3;
+const int stride = 1 << strideBits;
+
+// The parts of a column, first and one past the last, that come within reach of occupied cells.
+ivec2 partsWithin(ivec2 at) {
+    vec2 aside = vec2(at) + 0.5 - float(RESOLUTION / 2);
+    float reach = REACH > 0.0 ? REACH : float(RESOLUTION);
+    float under = reach * reach - dot(aside, aside);
+    float chord = under > 0.0 ? sqrt(under) : -float(RESOLUTION);
+    ivec2 ends = ivec2(floor(float(RESOLUTION / 2) - chord), ceil(float(RESOLUTION / 2) + chord));
+    return clamp(ivec2(ends.x >> strideBits, (ends.y + stride - 1) >> strideBits), ivec2(0), ivec2(RESOLUTION / stride));
+}
 
 void main() {
     ivec3 id = ivec3(gl_GlobalInvocationID);
@@ -57,11 +78,14 @@ void main() {
     ivec3 position = ivec3((RESOLUTION / 2) << whole) + (2 * id.x + 1 - RESOLUTION) * halfX +
                      (2 * id.y + 1 - RESOLUTION) * halfY + (1 - RESOLUTION) * halfZ;
     ivec3 step_ = 2 * halfZ;
+    ivec2 parts = partsWithin(id.xy);
+    position += stride * parts.x * step_;
     uint column[WORDS];
-    for (int w = 0; w < WORDS; ++w) {
+    for (int w = 0; w < WORDS; ++w) column[w] = 0u;
+    for (int part = parts.x; part < parts.y; ++part) {
         uint bits = 0u;
-        // A constant number of trips measures faster than leaving early.
-        for (int i = 0; i < 32; ++i) {
+        for (int i = 0; i < stride; ++i) {
+            // With a mask at the end in place of the `if` the whole takes twice as long.
             if (((position.x | position.y | position.z) & ~((RESOLUTION << whole) - 1)) == 0) {
                 // occupancyWord() by shifts: with multiplications the whole takes 1.4 times as long.
                 int index = ((position.z >> (whole + 5)) << (2 * RESOLUTION_BITS)) |
@@ -71,7 +95,8 @@ void main() {
             }
             position += step_;
         }
-        column[w] = bits;
+        bits <<= uint(part * stride & 31);
+        for (int w = 0; w < WORDS; ++w) column[w] |= part * stride >> 5 == w ? bits : 0u;
     }
     int at = ((FIRST_MAP + map) * RESOLUTION + id.y) * RESOLUTION + id.x;
 #if WORDS == 1

@@ -20,7 +20,7 @@ struct OccupancyGrid {
     float inverseCellSize;
     float halfResolution;   // N / 2
     uint resolution;       // N
-    uint pad;
+    float reach;           // in cells: no point farther from the centre lies in an occupied cell; 0: unknown
 };
 
 // Where rays through a map begin (occupancyBegin() of shaders/lib/occupancy.glsl). 16 bytes of a uniform block (std140).

@@ -393,6 +393,7 @@ TEST_F(OccupancyRoma, AMapThatChangesEveryFrameRenewsAll) {
         all.frame();
         turns.frame();
         EXPECT_EQ(mapsOf(all).rotated, mapsOf(turns).rotated);
+        expectMapsOfTheirCandidates(mapsOf(all));
         EXPECT_EQ(candidatesOf(mapsOf(all)), candidatesOf(mapsOf(turns)));
     }
 }
