@@ -98,8 +98,9 @@ struct FilterTest : ShippedTest {
     static float depthAt(float viewDepth) { return 0.1f / viewDepth; }
 
     struct GivenRenderer : Renderer {
-        GivenRenderer(const Graph& graph, Extent size)
-            : Renderer(graph, registry(), trianglesScene(square()), context().capabilities(), options(size)) {
+        GivenRenderer(const Graph& graph, Extent size,
+                      const Capabilities& capabilities = context().capabilities())
+            : Renderer(graph, registry(), trianglesScene(square()), capabilities, options(size)) {
             setFreeCamera(straightCamera());
         }
         static RenderOptions options(Extent size) {

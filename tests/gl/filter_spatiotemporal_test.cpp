@@ -259,6 +259,26 @@ TEST_F(Spatiotemporal, ACutAndAPropertyStartAnew) {
     }
 }
 
+TEST_F(Spatiotemporal, DevicesWithFewTexelsReadBlocksAndGiveTheSame) {
+    Capabilities few = context().capabilities();
+    few.maxTextureBufferTexels = 100;
+    for (const Settings& variant : variants)
+        for (const char* colours : {"given.colours=1", "given.colours=4"}) {
+            FrameImages given = wall(size);
+            given["signal"] = coins(0.5f);
+            given["motion"] = always(uniform(size, 2, 0.37f));
+            Settings settings = variant;
+            settings.emplace_back(colours);
+            const Graph filter = graph(given, settings, {"result", "variance"});
+            GivenRenderer usual(filter, size), other(filter, size, few);
+            for (int i = 0; i < 6; ++i) {
+                usual.frame();
+                other.frame();
+            }
+            EXPECT_LE(difference(usual.read(result), other.read(result)).largest, 1e-5);
+        }
+}
+
 TEST_F(Spatiotemporal, SaysWhatItLeavesOut) {
     FrameImages given = wall(size);
     given.erase("motion");
