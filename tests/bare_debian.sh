@@ -18,13 +18,15 @@ if [ ! -x "$root/usr/bin/git" ]; then
     rm -f "$root"/etc/apt/apt.conf.d/docker-*
     [ -s "$root/etc/apt/sources.list.d/debian.sources" ] && rm -f "$root/etc/apt/sources.list"
     cp /etc/resolv.conf "$root/etc/resolv.conf"
+    echo "127.0.0.1 localhost $(hostname)" >>"$root/etc/hosts"
     chroot "$root" useradd -m -G sudo newcomer
     echo 'newcomer ALL=(ALL) NOPASSWD: ALL' >"$root/etc/sudoers.d/newcomer"
 fi
-finish() { umount "$root/proc" "$root/dev" 2>/dev/null || true; }
+finish() { umount "$root/dev/pts" "$root/dev" "$root/proc" 2>/dev/null || true; }
 trap finish EXIT
 mountpoint -q "$root/proc" || mount -t proc proc "$root/proc" 2>/dev/null || mount --bind /proc "$root/proc"
 mountpoint -q "$root/dev" || mount --bind /dev "$root/dev"
+mountpoint -q "$root/dev/pts" || mount --bind /dev/pts "$root/dev/pts"
 
 rm -rf "$root/home/newcomer/kestrel"
 git clone -q "$source" "$root/home/newcomer/kestrel"
