@@ -38,7 +38,7 @@ LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, 
 // Why these maps cannot be made: too many lights for a block, or more memory than maxLightMapBytes. `bytes`
 // is what a texel of all arrays takes.
 inline constexpr std::uint32_t maxLightSlots = 64;
-inline constexpr std::uint64_t maxLightMapBytes = std::uint64_t{2} << 30;
+inline constexpr std::uint64_t maxLightMapBytes = std::uint64_t{1} << 30;
 std::optional<std::string> lightMapMistake(const LightMapLayout& layout, int resolution, int bytes);
 
 // How the maps of a frame are displaced against aliasing.

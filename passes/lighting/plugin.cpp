@@ -4,6 +4,7 @@
 #include "environment.h"
 #include "radiance_sum.h"
 #include "reflective_shadow_map.h"
+#include "rsm_gather.h"
 
 KESTREL_PLUGIN {
     registry.add(kestrel::Composite::type());
@@ -11,4 +12,5 @@ KESTREL_PLUGIN {
     registry.add(kestrel::Environment::type());
     registry.add(kestrel::RadianceSum::type());
     registry.add(kestrel::ReflectiveShadowMap::type());
+    registry.add(kestrel::RsmGather::type());
 }

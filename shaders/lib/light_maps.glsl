@@ -7,7 +7,7 @@
 #define FOR_LIGHTS(slot, FIRST, SLOTS, count)                                                                                \
     for (uint slot = uint(FIRST); slot < uint(FIRST) + uint(SLOTS) && slot < uint(FIRST) + count; ++slot)
 
-// Where a position lies in a map.
+// Where something lies in a map.
 struct LightMapPlace {
     vec2 texel;      // coordinate on the face; the centre of a texel is at + 0.5
     int layer;
@@ -17,8 +17,8 @@ struct LightMapPlace {
     bool inside;     // of the face
 };
 
-LightMapPlace lightMapPlace(LightMap map, vec3 position, float resolution) {
-    vec3 local = lightMapLocal(map.axisX, map.axisY, map.axisZ, position - map.origin);
+// Of a position in the map's axes; perspective maps take any length.
+LightMapPlace lightMapPlaceLocal(LightMap map, vec3 local, float resolution) {
     uint face = map.faces > 1u ? min(lightMapFace(local), map.faces - 1u) : 0u;
     bool parallel = map.faces == 0u;
     LightMapPlace place;
@@ -31,4 +31,8 @@ LightMapPlace lightMapPlace(LightMap map, vec3 position, float resolution) {
     place.footprint = 2.0 * w * map.halfWidth / resolution;
     place.inside = w > 0.0 && all(greaterThanEqual(place.texel, vec2(0.0))) && all(lessThan(place.texel, vec2(resolution)));
     return place;
+}
+
+LightMapPlace lightMapPlace(LightMap map, vec3 position, float resolution) {
+    return lightMapPlaceLocal(map, lightMapLocal(map.axisX, map.axisY, map.axisZ, position - map.origin), resolution);
 }

@@ -11,8 +11,9 @@
 
 const float shadowRounding = 2e-6; // of a depth, relative for perspective maps
 
+// Whether something stands before the depth.
 float shadowTap(sampler2DArray shadowMaps, ivec2 texel, int layer, int last, float depth) {
-    return texelFetch(shadowMaps, ivec3(clamp(texel, ivec2(0), ivec2(last)), layer), 0).r > depth ? 0.0 : 1.0;
+    return texelFetch(shadowMaps, ivec3(clamp(texel, ivec2(0), ivec2(last)), layer), 0).r > depth ? 1.0 : 0.0;
 }
 
 // Share of the light that reaches the position with unit normal n, on the light's side; a bias of 1 is as derived. Outside of
@@ -26,9 +27,10 @@ float shadowVisibility(sampler2DArray shadowMaps, LightMap map, vec3 position, v
     float reach = taps == 1 ? 0.71 : taps == 2 ? 1.42 : 2.83;
     place = lightMapPlace(map, position + n * (bias * reach * place.footprint * length(slope)), resolution);
     float depth = place.depth + shadowRounding * (map.faces == 0u ? 1.0 : place.depth);
-    float lit = 0.0;
+    // Summed is what is blocked: the weights' rounding does not darken what is lit.
+    float blocked = 0.0;
     if (taps == 1) {
-        lit = shadowTap(shadowMaps, ivec2(floor(place.texel)), place.layer, size - 1, depth);
+        blocked = shadowTap(shadowMaps, ivec2(floor(place.texel)), place.layer, size - 1, depth);
     } else {
         ivec2 first = ivec2(floor(place.texel - 0.5)) - (taps / 2 - 1);
         vec2 f = fract(place.texel - 0.5);
@@ -38,10 +40,10 @@ float shadowVisibility(sampler2DArray shadowMaps, LightMap map, vec3 position, v
             for (int x = 0; x < taps; ++x) {
                 TRIP;
                 float wx = x == 0 ? 1.0 - f.x : x == taps - 1 ? f.x : 1.0;
-                lit += wx * wy * shadowTap(shadowMaps, first + ivec2(x, y), place.layer, size - 1, depth);
+                blocked += wx * wy * shadowTap(shadowMaps, first + ivec2(x, y), place.layer, size - 1, depth);
             }
         }
-        lit /= float((taps - 1) * (taps - 1));
+        blocked /= float((taps - 1) * (taps - 1));
     }
-    return place.inside ? lit : 1.0;
+    return place.inside ? 1.0 - blocked : 1.0;
 }
