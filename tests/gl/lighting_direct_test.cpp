@@ -1,0 +1,329 @@
+// Direct light: closed forms and sums over areas, edges of shadows, what is left out, extreme cases.
+#include "lighting_fixture.h"
+
+namespace kestrel::test {
+namespace {
+
+struct DirectLightTest : LightingTest {
+    // Holds `result` against irradiance / pi at every `step`-th pixel; true values below `least` are not
+    // asked for relatively.
+    static void expectIrradiance(const Image& image, const std::function<float(const glm::vec3&)>& truth,
+                                 float tolerance, int step = 5) {
+        float largest = 0;
+        for (int y = 0; y < image.height; y += step)
+            for (int x = 0; x < image.width; x += step)
+                largest = std::max(largest, truth(squarePoint(image, x, y)));
+        ASSERT_GT(largest, 0);
+        for (int y = 0; y < image.height; y += step)
+            for (int x = 0; x < image.width; x += step) {
+                const float expected = truth(squarePoint(image, x, y)) / pi;
+                ASSERT_NEAR(image.at(x, y, 1), expected, tolerance * std::max(expected, 0.01f * largest))
+                    << "at " << x << ", " << y;
+            }
+    }
+    // Irradiance at a point of the plane z = 0 from a patch of radiance 1, by its middle.
+    static float patch(const glm::vec3& point, const glm::vec3& from, const glm::vec3& normal, float area) {
+        const glm::vec3 to = from - point;
+        const float d2 = glm::dot(to, to);
+        return std::max(0.0f, to.z) * std::max(0.0f, -glm::dot(normal, to)) * area / (d2 * d2);
+    }
+};
+
+TEST_F(DirectLightTest, APointLightIsIntensityTimesCosineOverDistanceSquared) {
+    const glm::vec3 at(0.3f, -0.2f, 0.7f);
+    const Scene scene = litScene(square(), {{lightOf(LightKind::Point, 5), at, {0, 0, -1}}});
+    expectIrradiance(
+        picture(directGraph(), scene),
+        [&](const glm::vec3& p) {
+            const glm::vec3 to = at - p;
+            return 5 * to.z / std::pow(glm::length(to), 3.0f);
+        },
+        1e-4f);
+}
+
+TEST_F(DirectLightTest, ARangeEndsAPointLightSmoothly) {
+    const glm::vec3 at(0, 0, 0.5f);
+    Light light = lightOf(LightKind::Point, 2);
+    light.range = 1.1f;
+    expectIrradiance(
+        picture(directGraph(), litScene(square(), {{light, at, {0, 0, -1}}})),
+        [&](const glm::vec3& p) {
+            const float d = glm::length(at - p);
+            return 2 * 0.5f / (d * d * d) * std::clamp(1 - std::pow(d / 1.1f, 4.0f), 0.0f, 1.0f);
+        },
+        2e-4f);
+}
+
+TEST_F(DirectLightTest, ASpotLightFallsOffBetweenItsCones) {
+    const glm::vec3 at(0.2f, 0.1f, 1.2f), direction = glm::normalize(glm::vec3(0.1f, -0.2f, -1));
+    Light light = lightOf(LightKind::Spot, 3);
+    light.innerCone = 0.3f;
+    light.outerCone = 0.6f;
+    expectIrradiance(
+        picture(directGraph(), litScene(square(), {{light, at, direction}})),
+        [&](const glm::vec3& p) {
+            const glm::vec3 to = at - p;
+            const float d = glm::length(to);
+            const float scale = 1 / (std::cos(0.3f) - std::cos(0.6f));
+            const float share =
+                std::clamp((glm::dot(direction, -to / d) - std::cos(0.6f)) * scale, 0.0f, 1.0f);
+            return 3 * share * share * to.z / (d * d * d);
+        },
+        1e-3f);
+}
+
+TEST_F(DirectLightTest, ADirectionalLightIsLuxTimesCosine) {
+    const glm::vec3 direction = glm::normalize(glm::vec3(1, 0.5f, -0.7f));
+    expectIrradiance(
+        picture(directGraph(),
+                litScene(square(), {{lightOf(LightKind::Directional, 4), {0, 0, 2}, direction}})),
+        [&](const glm::vec3&) { return -4 * direction.z; }, 1e-5f);
+}
+
+TEST_F(DirectLightTest, LightsOfAllKindsAdd) {
+    std::vector<PlacedLight> lights = {{lightOf(LightKind::Directional, 1), {0, 0, 2}, {0, 0, -1}},
+                                       {lightOf(LightKind::Point, 1), {0.5f, 0, 1}, {0, 0, -1}},
+                                       {lightOf(LightKind::Point, 2), {-0.5f, 0, 1}, {0, 0, -1}},
+                                       {lightOf(LightKind::Spot, 3), {0, 0.5f, 1}, {0, 0, -1}},
+                                       {lightOf(LightKind::Point, 1), {0, 0.1f, 1}, {0, 0, -1}},
+                                       {lightOf(LightKind::Rectangle, 1), {0, 0, 1}, {0, 0, -1}},
+                                       {lightOf(LightKind::Sphere, 1), {0, 0, 1}, {0, 0, -1}}};
+    lights[5].light.halfSize = {0.2f, 0.1f};
+    lights[6].light.halfSize = {0.1f, 0};
+    Image sum(64, 64, 4);
+    for (const PlacedLight& light : lights) {
+        const Image one = picture(directGraph(), litScene(square(), {light}));
+        for (size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += one.values[i];
+    }
+    const Image all = picture(directGraph(), litScene(square(), lights));
+    for (int y = 0; y < 64; y += 7)
+        for (int x = 0; x < 64; x += 7)
+            ASSERT_NEAR(all.at(x, y), sum.at(x, y), 1e-5f * sum.at(x, y) + 1e-6f) << x << ", " << y;
+}
+
+TEST_F(DirectLightTest, ARectangleIsTheSumOverItsArea) {
+    // Above the plane, tilted; and upright on it, half of it below the horizon, shining along the plane.
+    const std::pair<glm::vec3, glm::vec3> places[] = {{{0.1f, 0.2f, 0.6f}, {0.3f, 0.2f, -1}},
+                                                      {{-0.6f, 0, 0.1f}, {1, 0, 0}}};
+    for (const auto& [at, along] : places) {
+        const glm::vec3 direction = glm::normalize(along);
+        Light light = lightOf(LightKind::Rectangle, 2);
+        light.halfSize = {0.3f, 0.2f};
+        const Scene scene = litScene(square(), {{light, at, direction}});
+        const LightState state = lightsAt(scene, 0).at(0);
+        expectIrradiance(
+            picture(directGraph("\"shadows\": false"), scene),
+            [&](const glm::vec3& p) {
+                constexpr int n = 200;
+                double sum = 0;
+                for (int i = 0; i < n; ++i)
+                    for (int j = 0; j < n; ++j) {
+                        const float u = (2 * static_cast<float>(i) + 1) / n - 1;
+                        const float v = (2 * static_cast<float>(j) + 1) / n - 1;
+                        sum += double{
+                            patch(p, state.position + 0.3f * u * state.tangent + 0.2f * v * state.bitangent,
+                                  direction, 4 * 0.3f * 0.2f / (n * n))};
+                    }
+                return static_cast<float>(2 * sum);
+            },
+            2e-3f, 9);
+    }
+}
+
+TEST_F(DirectLightTest, ASphereIsTheSumOverItsSurface) {
+    for (const float height : {0.5f, 0.1f, -0.1f}) { // above the horizon, and through it
+        Light light = lightOf(LightKind::Sphere, 2);
+        light.halfSize = {0.25f, 0};
+        const glm::vec3 at(0.1f, 0, height);
+        const Image image =
+            picture(directGraph("\"shadows\": false"), litScene(square(), {{light, at, {0, 0, -1}}}));
+        const auto truth = [&](const glm::vec3& p) {
+            constexpr int n = 300;
+            double sum = 0;
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < 2 * n; ++j) {
+                    const float z = (2 * static_cast<float>(i) + 1) / n - 1;
+                    const float phi = pi * (static_cast<float>(j) + 0.5f) / n;
+                    const float r = std::sqrt(1 - z * z);
+                    const glm::vec3 out(r * std::cos(phi), r * std::sin(phi), z);
+                    const glm::vec3 from = at + 0.25f * out;
+                    const glm::vec3 to = from - p;
+                    const float d2 = glm::dot(to, to);
+                    sum += double{std::max(0.0f, to.z) * std::max(0.0f, -glm::dot(out, to)) / (d2 * d2)};
+                }
+            return static_cast<float>(2 * sum * (4 * pi * 0.25 * 0.25 / (2.0 * n * n)));
+        };
+        for (const glm::ivec2 pixel :
+             {glm::ivec2(8, 20), glm::ivec2(20, 50), glm::ivec2(60, 31), glm::ivec2(24, 40)}) {
+            const glm::vec3 p = squarePoint(image, pixel.x, pixel.y);
+            if (glm::length(p - at) < 0.3f) continue;
+            const float expected = truth(p) / pi;
+            EXPECT_NEAR(image.at(pixel.x, pixel.y), expected, 0.01f * expected + 1e-4f)
+                << height << " at " << pixel.x;
+        }
+    }
+}
+
+// A square of half width 0.25 at half the height of the light throws a shadow of half width 0.5; a
+// directional light from straight above one of 0.25.
+TEST_F(DirectLightTest, AShadowEndsWhereItShould) {
+    for (const LightKind kind :
+         {LightKind::Point, LightKind::Spot, LightKind::Directional, LightKind::Sphere}) {
+        Light light = lightOf(kind, 3);
+        light.innerCone = 0.9f;
+        light.outerCone = 1.0f;
+        light.halfSize = {1e-3f, 0};
+        // A square below the plane keeps the middle of the bounds at the origin.
+        std::vector<glm::vec3> corners = join(square(), quad({0, 0, 0.5f}, {0.25f, 0, 0}, {0, 0.25f, 0}));
+        corners = join(corners, quad({0, 0, -0.5f}, {0.25f, 0, 0}, {0, 0.25f, 0}));
+        const float edge = kind == LightKind::Directional ? 0.25f : 0.5f;
+        for (const char* filter : {"nearest", "two", "four"}) {
+            auto made = lit(directGraph(fmt::format(R"("filter": "{}")", filter)),
+                            litScene(corners, {{light, {0, 0, 1}, {0, 0, -1}}}));
+            // From below the occluder, so that it does not hide its shadow.
+            CameraState camera = squareCamera();
+            camera.view = glm::translate(glm::mat4(1), glm::vec3(0, 0, -0.45f));
+            camera.position = glm::vec3(0, 0, 0.45f);
+            made.setFreeCamera(camera);
+            made.frame();
+            const Image image = made.read({"direct", "result"});
+            for (int y = 0; y < 64; ++y)
+                for (int x = 0; x < 64; ++x) {
+                    const glm::vec3 p = squarePoint(image, x, y);
+                    const float reach = std::max(std::abs(p.x), std::abs(p.y));
+                    if (std::abs(reach - edge) < 0.02f) continue;
+                    if (reach < edge)
+                        ASSERT_LE(image.at(x, y), 1e-6f)
+                            << static_cast<int>(kind) << filter << x << ", " << y;
+                    else
+                        ASSERT_GT(image.at(x, y), 0) << static_cast<int>(kind) << filter << x << ", " << y;
+                }
+        }
+    }
+}
+
+TEST_F(DirectLightTest, NoSurfaceShadowsItselfAtAnyTilt) {
+    for (const LightKind kind : {LightKind::Point, LightKind::Spot, LightKind::Directional})
+        for (const float tilt : {0.1f, 0.7f, 1.2f, 1.5f})
+            for (const char* filter : {"nearest", "two", "four"}) {
+                Light light = lightOf(kind, 1);
+                light.innerCone = 0.9f;
+                light.outerCone = 1.2f;
+                const glm::vec3 direction(std::sin(tilt), 0.1f, -std::cos(tilt));
+                const Scene scene = litScene(square(), {{light, -2.0f * direction, direction}});
+                const auto shaded = [&](const char* shadows) {
+                    return picture(
+                        directGraph(fmt::format(R"("resolution": 256, "filter": "{}", "shadows": {})", filter,
+                                                shadows)),
+                        scene);
+                };
+                const Difference with = difference(shaded("true"), shaded("false"));
+                EXPECT_EQ(with.largest, 0) << static_cast<int>(kind) << " at " << tilt << " by " << filter;
+            }
+}
+
+TEST_F(DirectLightTest, TheModuleSaysWhatTheScreenShows) {
+    std::vector<PlacedLight> lights = {{lightOf(LightKind::Point, 2), {0.5f, 0.1f, 1}, {0, 0, -1}},
+                                       {lightOf(LightKind::Rectangle, 2), {0, 0, 1.5f}, {0, 0, -1}}};
+    lights[1].light.halfSize = {0.2f, 0.2f};
+    const glm::vec3 albedo(0.2f, 0.4f, 0.8f);
+    std::vector<glm::vec3> corners = join(square(), quad({0, 0, 0.5f}, {0.25f, 0, 0}, {0, 0.25f, 0}));
+    corners = join(corners, quad({0, 0, -0.5f}, {0.25f, 0, 0}, {0, 0.25f, 0}));
+    const Scene scene = litScene(corners, lights, albedo);
+    const Image direct = picture(directGraph(), scene);
+    const Image probe = picture(probeGraph(R"("source": {"type": "DirectLight"})",
+                                           R"(,["g.depth", "source.depth"], ["g.normal", "source.normal"])"),
+                                scene);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(probe.at(x, y, c), albedo[c] * direct.at(x, y, c), 2e-3f * direct.at(x, y, c))
+                    << x << ", " << y; // the albedo is stored as half floats
+}
+
+TEST_F(DirectLightTest, LeavesOutWhatTheSceneHasNot) {
+    const auto point =
+        lit(directGraph(), litScene(square(), {{lightOf(LightKind::Point, 1), {0, 0, 1}, {}}}));
+    EXPECT_TRUE(leavesOut(point.plan(), "spot lights: the scene has none"));
+    EXPECT_TRUE(leavesOut(point.plan(), "rectangle lights: the scene has none"));
+    auto dark = lit(directGraph(), litScene(square(), {}));
+    dark.frame();
+    EXPECT_TRUE(leavesOut(dark.plan(), "lights: the scene has none"));
+    for (const PlanStep& step : dark.plan().steps) EXPECT_NE(step.step.name, "shadows");
+    for (const float value : dark.read({"direct", "result"}).values) ASSERT_EQ(value, 0);
+}
+
+TEST_F(DirectLightTest, AStaticSceneIsLitOnce) {
+    RenderOptions options;
+    options.timing = true;
+    auto made = lit(directGraph(), litScene(square(), {{lightOf(LightKind::Spot, 1), {0, 0, 1}, {0, 0, -1}}}),
+                    options);
+    EXPECT_FALSE(made.frame().samples.empty());
+    EXPECT_TRUE(made.frame().samples.empty());
+}
+
+TEST_F(DirectLightTest, ScaleDoesNotMatter) {
+    std::vector<PlacedLight> lights = {{lightOf(LightKind::Point, 2), {0.5f, 0.1f, 1}, {0, 0, -1}},
+                                       {lightOf(LightKind::Spot, 2), {-0.5f, 0.1f, 1}, {0, 0, -1}},
+                                       {lightOf(LightKind::Directional, 1), {0, 0, 1}, {0.3f, 0.2f, -1}},
+                                       {lightOf(LightKind::Rectangle, 2), {0, 0, 1.5f}, {0, 0, -1}},
+                                       {lightOf(LightKind::Sphere, 2), {0, 0.4f, 1.5f}, {0, 0, -1}}};
+    for (PlacedLight& light : lights) light.light.halfSize = {0.2f, 0.2f};
+    std::vector<glm::vec3> corners = join(square(), quad({0, 0, 0.5f}, {0.25f, 0, 0}, {0, 0.25f, 0}));
+    corners = join(corners, quad({0, 0, -0.5f}, {0.25f, 0, 0}, {0, 0.25f, 0}));
+    const auto at = [&](float scale) {
+        return picture(
+            directGraph(),
+            litScene(corners, lights, glm::vec3(0.5f), glm::scale(glm::dmat4(1), glm::dvec3(double{scale}))),
+            1, scale);
+    };
+    const Image usual = at(1);
+    for (const float scale : {1e-4f, 1e4f}) {
+        // Single pixels at edges of shadows may flip.
+        EXPECT_LE(difference(usual, at(scale)).rms, 0.01) << scale;
+    }
+}
+
+TEST_F(DirectLightTest, StrongAndOddLightsStayFinite) {
+    RenderOptions options;
+    options.checkFinite = true;
+    for (const LightKind kind :
+         {LightKind::Point, LightKind::Spot, LightKind::Directional, LightKind::Rectangle, LightKind::Sphere})
+        for (const glm::vec3 at : {glm::vec3(0), glm::vec3(0, 0, 1e-6f), glm::vec3(0, 0, 1)})
+            for (const float size : {0.0f, 0.3f}) {
+                Light light = lightOf(kind, 1e9f);
+                light.halfSize = {size, size};
+                light.innerCone = light.outerCone =
+                    size * 5; // a cone without width, or of almost all directions
+                Graph graph = shippedGraph("direct_light");
+                auto made = lit(graph, litScene(square(), {{light, at, {0, 0, -1}}}), options);
+                made.frame();
+                auto probe = lit(probeGraph(R"("source": {"type": "DirectLight"})",
+                                            R"(,["g.depth", "source.depth"], ["g.normal", "source.normal"])"),
+                                 litScene(square(), {{light, at, {0, 0, -1}}}), options);
+                probe.frame();
+            }
+    auto empty = lit(shippedGraph("direct_light"),
+                     litScene({}, {{lightOf(LightKind::Point, 1), {0, 0, 1}, {}}}), options);
+    empty.frame();
+}
+
+TEST_F(DirectLightTest, ByGeometryShaderItIsTheSame) {
+    Light light = lightOf(LightKind::Point, 2);
+    std::vector<glm::vec3> corners = join(square(), quad({0, 0, 0.5f}, {0.25f, 0, 0}, {0, 0.25f, 0}));
+    const Scene scene = litScene(corners, {{light, {0.1f, 0.3f, 1}, {0, 0, -1}}});
+    const auto with = [&](bool extension) {
+        Capabilities capabilities = context().capabilities();
+        if (!extension) capabilities.extensions.erase("GL_ARB_shader_viewport_layer_array");
+        RenderOptions options;
+        options.size = frame;
+        Renderer made(directGraph(), withProbe(), scene, capabilities, options);
+        made.setFreeCamera(squareCamera());
+        made.frame();
+        return made.read({"direct", "result"});
+    };
+    EXPECT_LE(difference(with(true), with(false)).rms, 1e-3);
+}
+
+} // namespace
+} // namespace kestrel::test
