@@ -22,6 +22,9 @@ public:
     TraceMethod method = TraceMethod::Dda2d;
     bool mips = true;
     int iterations = 1024;
+    // Within 0.003 of the least error of visibility (0.068 of 1 at 64 cells, 0.060 at 128, `blob`) in a sweep
+    // of both, offset 0 to 1.5 and skip 0 to 3; the same as Roma's, so that the two differ in the tracing
+    // alone.
     float offset = 0.5f;
     float skip = 2;
     bool countExhausted = false;
