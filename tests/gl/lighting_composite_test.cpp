@@ -17,7 +17,7 @@ constexpr const char* partEdges =
     ["g.depth", "ao.depth"], ["g.normal", "ao.normal"], ["bvh.tracer", "ao.tracer"], ["g.depth", "sky.depth"],
     ["g.albedo", "composite.albedo"], ["g.material", "composite.material"], ["g.emission", "composite.emission"],
     ["direct.result", "composite.direct"], ["indirect.result", "composite.indirect"], ["ao.visibility", "composite.visibility"],
-    ["ao.visibility", "composite.shadow"], ["direct.specular", "composite.specular"],
+    ["ao.visibility", "composite.shadow"], ["indirect.result", "composite.area"], ["direct.specular", "composite.reflection"], ["direct.specular", "composite.specular"],
     ["sky.background", "composite.background"])";
 
 TEST_F(CompositeTest, IsEmissionAlbedoTimesLightAndSpecular) {
@@ -50,9 +50,10 @@ TEST_F(CompositeTest, IsEmissionAlbedoTimesLightAndSpecular) {
             ++covered;
             const glm::vec3 ambient(0.1f, 0.2f, 0.3f);
             const glm::vec3 light =
-                visibility.at(x, y) * (pixelColour(indirect, x, y) + ambient + pixelColour(direct, x, y));
+                visibility.at(x, y) * (pixelColour(indirect, x, y) + ambient + pixelColour(direct, x, y)) +
+                pixelColour(indirect, x, y);
             const glm::vec3 expected = pixelColour(albedo, x, y) * light * (1 - material.at(x, y, 1)) +
-                                       pixelColour(specular, x, y) + pixelColour(emission, x, y);
+                                       2.0f * pixelColour(specular, x, y) + pixelColour(emission, x, y);
             for (int c = 0; c < 3; ++c)
                 ASSERT_NEAR(result.at(x, y, c), expected[c], 1e-5f * expected[c] + 1e-6f) << x << ", " << y;
             ASSERT_EQ(result.at(x, y, 3), 1);
