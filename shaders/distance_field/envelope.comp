@@ -4,6 +4,7 @@
 //
 // ALONG_Y: lines along y; the distance along z comes from the bits of the map's columns. Otherwise lines along x, from
 // the squared distances `planes` that this left, and distances are written.
+#include "distance_field/half.glsl"
 #include "lib/trips.glsl"
 #include "shared/occupancy.h"
 
@@ -88,7 +89,7 @@ void main() {
 #ifdef ALONG_Y
         imageStore(planes, ivec3(line.x, i, line.y), vec4(least));
 #else
-        imageStore(field, ivec3(i, line), vec4(sqrt(least)));
+        imageStore(field, ivec3(i, line), vec4(nearestHalf(sqrt(least))));
 #endif
     }
     TRIPS_END;

@@ -1,6 +1,7 @@
 // One round of 3D jump flooding (Rong and Tan, "Jump Flooding in GPU with Applications to Voronoi Diagram and Distance
 // Transform", 2006): each cell takes the nearest of the seeds that the 27 cells STRIDE apart know. FIRST reads the seeds
 // from the map, LAST writes distances.
+#include "distance_field/half.glsl"
 #include "shared/occupancy.h"
 
 layout(local_size_x = 32, local_size_y = 8) in;
@@ -54,7 +55,7 @@ void main() {
                 }
             }
 #ifdef LAST
-    imageStore(field, cell, vec4(sqrt(least)));
+    imageStore(field, cell, vec4(nearestHalf(sqrt(least))));
 #else
     imageStore(TO, cell, uvec4(nearest));
 #endif
