@@ -15,7 +15,7 @@ public:
                                       const Demand& demand) const override;
     void execute(const Step& step, Commands& commands) override;
 
-    float reach = 0.1f;
+    float reach = 0.05f; // the best of a sweep on `blob` with the screen near and ROMA far
     bool relative = true;
 };
 

@@ -6,8 +6,8 @@
 // than the thickness. A ray towards the eye is asked at the sample alone: the surface that it starts on comes nearer too,
 // and would lie before where the ray was. Leaving the image, ending, or running out of STEPS is a miss.
 //
-// The pixel that a ray from a surface starts in does not count, and its origin moves off the surface by the width of a
-// pixel: depths of the pixels beside differ from those on the ray by up to half a pixel's slope.
+// The pixel that a ray from a surface starts in does not count, and its origin moves off the surface by half the width of a
+// pixel: depths of the pixel beside differ from those on the ray by up to half a pixel's slope.
 #include "lib/frame.glsl"
 #include "lib/tracer.glsl"
 #include "lib/trips.glsl"
@@ -71,13 +71,13 @@ bool M(march)(Ray ray, out float t, out float error) {
     skipped += (M(settings).stride - 1.0) *
                unitFloat(hashCombine(pixelSeed(pixel, randomScreenTrace, frame.seed), frame.index));
 #endif
-    // A ray that stays within a pixel has one sample; one from a surface has none, since all of it is that surface's.
-    if (!onSurface) skipped = min(skipped, pixels);
     float before = from;
     bool found = false;
     for (int i = 0; i < STEPS; ++i) {
         TRIP;
         float s = (skipped + float(i) * M(settings).stride) * inversePixels;
+        // A ray within one pixel has its end for a sample; one from a surface has none, since that pixel is its own.
+        if (i == 0 && !onSurface) s = min(s, 1.0);
         vec2 at = begin + s * way;
         if (s > 1.0 || any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size))) break;
         t = from + (to - from) * s * inverseW1 / mix(inverseW0, inverseW1, s);
