@@ -42,6 +42,7 @@ Image resampledPicture(const Image& picture) {
 // A picture's path is relative to the scene's folder, or to the working folder of a built-in scene, and does
 // not leave it: graphs may come from strangers.
 Image readPicture(const std::string& file, const Scene& scene) {
+    if (file.empty()) throw InputError("Environment: its kind is picture, but no file is named");
     const std::filesystem::path source(scene.source);
     const bool builtin = scene.source.empty() || scene.source.starts_with("builtin:");
     const std::filesystem::path folder =
@@ -89,8 +90,6 @@ Defines Environment::defines() const {
 
 Declaration Environment::declare(const World&, const Inputs& inputs, const Demand& demand) const {
     Declaration declaration;
-    if (kind == Kind::Picture && file.empty())
-        declaration.problems.push_back({"", "kind is picture, but no file is named"});
     Module module{.port = "radiance",
                   .shader = "lighting/environment.glsl",
                   .defines = defines(),

@@ -28,8 +28,9 @@ PassType RsmGather::type() {
                 "Cosine-weighted mean of the radiance that arrives (irradiance over pi); 0 where nothing is")
         .range(0, 1e30)
         .number("samples", &RsmGather::samples, 1, 512, "texels", "Asked of each light, a pixel and frame")
-        .number("radius", &RsmGather::radius, 0.001, 4, "map widths",
-                "Of the disk around the pixel's own place that samples are drawn from; 1 is all of a light's map")
+        .number(
+            "radius", &RsmGather::radius, 0.001, 4, "map widths",
+            "Of the disk around the pixel's own place that samples are drawn from; 1 is all of a light's map")
         .flag("rotate", &RsmGather::rotate,
               "Other samples for each pixel and frame; otherwise the same for all of them");
 }

@@ -56,6 +56,7 @@ std::vector<SceneFacts> worlds() {
     plain.bounds.add(glm::vec3(-1));
     plain.bounds.add(glm::vec3(1));
     plain.sphere = {glm::vec3(0), 1.8f};
+    plain.spotLights = 1;
     SceneFacts rich = plain;
     rich.hasMasked = rich.hasTextures = rich.hasNormalMaps = rich.hasVertexColours = rich.hasEmission = true;
     rich.maskedTriangles = 10;
@@ -63,6 +64,8 @@ std::vector<SceneFacts> worlds() {
     rich.colourTextureArrays = 2;
     rich.dataTextureArrays = 1;
     rich.geometryMoves = rich.geometryDeforms = true;
+    rich.pointLights = 3;
+    rich.spotLights = rich.directionalLights = rich.rectangleLights = rich.sphereLights = 1;
     return {plain, rich, SceneFacts{}};
 }
 
