@@ -1,4 +1,6 @@
 // The distance field against brute force, its tracer against closed forms, then against the exact tracer.
+#include "graph/plan.h"
+#include "shader/validate.h"
 #include "shared/occupancy.h"
 #include "traced_fixture.h"
 
@@ -334,6 +336,29 @@ TEST_F(DistanceFields, AStaticSceneMakesItsFieldOnce) {
     for (int i = 0; i < 3; ++i)
         for (const StepSample& sample : made.frame().samples) runs += sample.step == "along_x" ? 1 : 0;
     EXPECT_EQ(runs, 1u);
+}
+
+TEST_F(DistanceFields, SmallTexelBuffersAreDoneWithout) {
+    // Where a map does not fit a texel buffer its words are read through a storage block.
+    World world;
+    world.facts = gatherFacts(trianglesScene(square()));
+    world.size = {32, 32, 1};
+    ASSERT_LT(world.capabilities.maxTextureBufferTexels, 256 * 256 * 256 / 32);
+    std::vector<std::filesystem::path> folders = {shareFolder() / "shaders"};
+    ShaderLibrary library(std::move(folders));
+    size_t throughStorage = 0;
+    for (const char* method : {"field.method=exact", "field.method=jump_flooding"}) {
+        const Graph graph =
+            tracedGraph({method, "bom.resolution=256", "ao.tracer=field.tracer"}, {{"mean", "result"}});
+        const Plan plan = compile(graph, tracedRegistry(), makePasses(graph, tracedRegistry()), world,
+                                  {.keepAll = false, .shareMemory = true, .previews = {}});
+        for (const ProgramRequest& request : plan.programs) {
+            throughStorage += request.defines.contains("BASE_STORAGE") ? 1 : 0;
+            for (const Problem& problem : validate(compose(request, library)))
+                ADD_FAILURE() << problem.text();
+        }
+    }
+    EXPECT_EQ(throughStorage, 2u);
 }
 
 TEST_F(DistanceFields, WhatIsNoMapIsRefused) {
