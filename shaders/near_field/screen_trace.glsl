@@ -71,6 +71,9 @@ bool M(march)(Ray ray, out float t, out float error) {
     skipped += (M(settings).stride - 1.0) *
                unitFloat(hashCombine(pixelSeed(pixel, randomScreenTrace, frame.seed), frame.index));
 #endif
+    // Of the inverse projection, what a depth needs to become a distance.
+    vec2 column = M(depthView).inverseProjection[2].zw;
+    vec2 constant = M(depthView).inverseProjection[3].zw;
     float before = from;
     bool found = false;
     for (int i = 0; i < STEPS; ++i) {
@@ -83,7 +86,8 @@ bool M(march)(Ray ray, out float t, out float error) {
         t = from + (to - from) * s * inverseW1 / mix(inverseW0, inverseW1, s);
         float now = nearest + t * away;
         float depth = texelFetch(M(depth), ivec2(at), 0).x;
-        float shown = viewDepth(M(depthView), depth);
+        vec2 eye = column * depth + constant;
+        float shown = -eye.x / eye.y;
         if (depth > 0.0 && now > shown && min(now, nearest + before * away) < shown + M(settings).thickness) {
             // Where the ray passes the depth of the pixel, if it does so here.
             if (abs(away) > 1e-6) t = clamp((shown - nearest) / away, before, t);
