@@ -6,9 +6,9 @@ namespace kestrel {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OutJson = nlohmann::ordered_json;
 
-Json spreadJson(const Spread& spread) {
+OutJson spreadJson(const Spread& spread) {
     return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
 }
 
@@ -36,15 +36,15 @@ RunStats gatherStats(Renderer& renderer, const Profile& profile, const std::stri
 }
 
 std::string statsJson(const RunStats& stats) {
-    Json passes = Json::array();
+    OutJson passes = OutJson::array();
     for (const Profile::PassTime& pass : stats.passes)
         passes.push_back(
             {{"name", pass.name}, {"type", pass.type}, {"runs", pass.runs}, {"ms", spreadJson(pass.ms)}});
-    Json groups = Json::object();
+    OutJson groups = OutJson::object();
     for (const auto& [group, spread] : stats.groups) groups[group] = spreadJson(spread);
-    Json leftOut = Json::array();
+    OutJson leftOut = OutJson::array();
     for (const LeftOut& item : stats.leftOut) leftOut.push_back({{"what", item.what}, {"why", item.why}});
-    Json json = {
+    OutJson json = {
         {"graph", stats.graph},
         {"scene", stats.scene},
         {"camera", stats.camera},
@@ -65,7 +65,7 @@ std::string statsJson(const RunStats& stats) {
           {"persistent", stats.memory.persistent}}},
         {"values", stats.values},
     };
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json.dump(2, ' ', false, OutJson::error_handler_t::replace) + "\n";
 }
 
 std::string memoryText(const MemoryReport& memory) {

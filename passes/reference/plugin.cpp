@@ -2,11 +2,13 @@
 #include "reference_ambient_occlusion.h"
 #include "reference_glossy_reflection.h"
 #include "reference_indirect_diffuse.h"
+#include "reference_ray_query.h"
 #include "reference_soft_shadow.h"
 
 KESTREL_PLUGIN {
     registry.add(kestrel::ReferenceAmbientOcclusion::type());
     registry.add(kestrel::ReferenceGlossyReflection::type());
     registry.add(kestrel::ReferenceIndirectDiffuse::type());
+    registry.add(kestrel::ReferenceRayQuery::type());
     registry.add(kestrel::ReferenceSoftShadow::type());
 }

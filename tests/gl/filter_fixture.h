@@ -9,6 +9,9 @@
 
 namespace kestrel::test {
 
+inline constexpr Extent size{48, 32, 1};
+inline const PortRef result{"filter", "result"};
+
 // The content of output `port` in frame `index`. What is missing is not connected.
 using FrameImages = std::map<std::string, std::function<Image(std::uint32_t index)>>;
 

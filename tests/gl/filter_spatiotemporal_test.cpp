@@ -7,8 +7,6 @@ namespace kestrel::test {
 namespace {
 
 using Settings = std::vector<std::string>;
-constexpr Extent size{48, 32, 1};
-const PortRef result{"filter", "result"};
 
 struct Spatiotemporal : FilterTest {
     static Graph graph(const FrameImages& given, const Settings& settings = {},
