@@ -14,5 +14,6 @@ void addPassesCommand(CLI::App& app, Run& run);
 void addDotCommand(CLI::App& app, Run& run);
 void addCompareCommand(CLI::App& app, Run& run);
 void addSceneCommand(CLI::App& app, Run& run);
+void addSweepCommand(CLI::App& app, Run& run);
 
 } // namespace kestrel

@@ -106,6 +106,7 @@ int main(int argc, char** argv) {
     addDotCommand(app, run);
     addCompareCommand(app, run);
     addSceneCommand(app, run);
+    addSweepCommand(app, run);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& done) {

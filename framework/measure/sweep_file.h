@@ -1,0 +1,169 @@
+// A sweep file: which variants of which graphs are measured on which scenes, against what. Plain data, no GL.
+#pragma once
+#include "graph/graph.h"
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+// Bounds on what a file may ask for.
+inline constexpr size_t maxSweepPoints = 10'000;
+
+// One of the settings that `--set` takes, and where it stands.
+struct SweepSetting {
+    std::string text;
+    Location where;
+};
+
+struct SweepScene {
+    std::string name; // of plots and file names: the file's, else the source's without "builtin:"
+    std::string source,
+        camera;       // "builtin:NAME", or a file in the folder of the sweep file; camera may be empty
+    std::string slug; // unique, for file names
+    Location where;
+};
+
+// What pictures are held against: run once a scene.
+struct SweepReference {
+    std::string graph;
+    PortRef output;
+    std::optional<PortRef> mask; // pixels count where it is greater than 0.5
+    std::vector<SweepSetting> settings;
+    int frames = 1;
+    Location where;
+};
+
+// What RayQuery's hits are held against. All variants trace its rays, byte for byte.
+struct SweepRays {
+    std::string graph;
+    PortRef rays, hits;
+    std::vector<SweepSetting> settings;
+    Location where;
+};
+
+struct SweepAxisValue {
+    std::string label; // "128", "ROMA"
+    std::vector<SweepSetting> settings;
+};
+
+struct SweepAxis {
+    std::string name;
+    std::vector<SweepAxisValue> values;
+};
+
+struct SweepVariant {
+    std::string name, graph, comment;
+    bool ray = false; // `output` is a buffer of hits (RayQuery), else a picture
+    PortRef output;
+    std::vector<SweepSetting> settings;
+    std::vector<SweepAxis> axes;                             // they multiply
+    std::vector<std::map<std::string, std::string>> exclude; // axis -> label; all must agree
+    std::string series; // points of one series are joined; "{axis}" stands for the axis's label
+    std::string along;  // the axis along which they are joined
+    std::string plot;   // which plot of the scene; empty: the only one
+    std::optional<int> frames;
+    Location where;
+};
+
+// A time that is made of others: the sum of groups ("generation") and passes ("roma"), some subtracted.
+struct SweepTime {
+    struct Term {
+        std::string name; // a group or a pass; of neither: 0
+        double factor = 1;
+    };
+    std::string name;
+    std::vector<Term> terms;
+};
+
+struct Sweep {
+    std::string name, title, comment; // name: the file's without its ending
+    std::filesystem::path file;
+    std::string text; // of the file, for the hash
+    Extent size{640, 360, 1};
+    int frames = 16;     // after which the picture is taken
+    int warmUp = 1;      // frames that are not timed, each time a variant has its turn
+    int repeats = 5;     // turns of each variant, round-robin
+    int timedFrames = 1; // a turn
+    std::uint32_t seed = 0;
+    bool rebuild = false; // everything is made anew in each timed frame, as in a scene that moves
+    bool hdr = false;     // pictures hold linear light without upper limit: HDR-FLIP
+    std::string plotTime = "total", plotError; // the axes that the page shows first
+    std::vector<SweepTime> times;
+    std::vector<SweepScene> scenes;
+    std::optional<SweepReference> reference;
+    std::optional<SweepRays> rays;
+    std::vector<SweepVariant> variants;
+};
+
+// Reads the JSON form ("kestrel_sweep": 1). Throws InputError with every mistake (unknown keys, wrong kinds,
+// unknown axes in labels and exclusions, names used twice), each with file:line:column and near names.
+Sweep parseSweep(std::string_view text, const std::string& file);
+Sweep loadSweep(const std::filesystem::path& file);
+
+// One variant with one value of each of its axes.
+struct SweepPoint {
+    std::string name;    // unique: "roma, resolution 128, angular 4"
+    std::string variant; // as in the file
+    std::string series, along, plot;
+    std::string slug; // unique, for file names: [a-z0-9_.-]
+    std::string graph;
+    bool ray = false;
+    PortRef output;
+    std::vector<SweepSetting> settings;                    // the variant's, then each axis's
+    std::vector<std::pair<std::string, std::string>> axes; // name, label
+    int frames = 1;
+    Location where;
+};
+
+// The name as any file system takes it ([a-z0-9_.-]), made unique among `taken`, which it joins.
+std::string sweepSlug(const std::string& name, std::set<std::string>& taken);
+
+// In the order of the file; the last axis changes fastest. Throws InputError where a sweep has more than
+// maxSweepPoints, or where two points would have one name.
+std::vector<SweepPoint> expandSweep(const Sweep& sweep);
+
+// What is measured together, so that its times compare: one scene with all points of one plot.
+struct SweepUnit {
+    int scene = 0;
+    std::string plot;
+    std::vector<int> points; // indices into expandSweep's
+    std::string slug;
+};
+std::vector<SweepUnit> sweepUnits(const Sweep& sweep, const std::vector<SweepPoint>& points);
+
+// "I/N", 1 <= I <= N. Throws InputError for anything else. Of `count` units shard I of N has those whose
+// index is I - 1 modulo N: each is in exactly one.
+struct Shard {
+    int index = 1, count = 1;
+    [[nodiscard]] bool has(size_t unit) const {
+        return unit % static_cast<size_t>(count) == static_cast<size_t>(index - 1);
+    }
+};
+Shard parseShard(const std::string& text);
+
+// The points whose name, variant or series is `only`; all if it is empty. Throws InputError with the near
+// name if there is none.
+std::vector<bool> choosePoints(const std::vector<SweepPoint>& points, const std::string& only);
+
+// The graph file that a sweep names: in the folder of the sweep file, else among the shipped graphs
+// (shareFolder()/graphs). Throws InputError if it is in neither, or leaves them.
+std::filesystem::path sweepGraphFile(const Sweep& sweep, const std::string& graph);
+
+// The graph with the settings, with `outputs` as its only outputs. Throws InputError with everything that is
+// wrong with it, at the places of the sweep file where these are known.
+Graph sweepGraph(const Sweep& sweep, const std::string& graph, const std::vector<SweepSetting>& settings,
+                 const std::vector<PortRef>& outputs, const Registry& registry, const Location& where);
+
+// Everything that is wrong with the graphs, settings and outputs of a sweep, before anything is measured.
+// Throws InputError.
+void checkSweep(const Sweep& sweep, const std::vector<SweepPoint>& points, const Registry& registry);
+
+// Of the text of the file, of the graphs that it names, of size, frames and repeats: 16 hexadecimal digits.
+// Results of another hash are of another sweep.
+std::string sweepHash(const Sweep& sweep);
+
+} // namespace kestrel

@@ -1,0 +1,197 @@
+// What a sweep has measured: as parts (one file a measurement, so that a stopped sweep goes on), as rows, and
+// as results.json and results.csv.
+#pragma once
+#include "measure/sweep_file.h"
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kestrel {
+
+// Median and quartiles of a series, linear between its sorted values (the median of an even count is the mean
+// of the middle two). All 0 for an empty series.
+struct Quartiles {
+    double q1 = 0, median = 0, q3 = 0;
+    friend bool operator==(const Quartiles&, const Quartiles&) = default;
+};
+Quartiles quartilesOf(std::vector<double> series);
+
+// Which machine measured: times compare within one only.
+struct SweepMachine {
+    std::string id; // of this host, renderer and driver: 6 hexadecimal digits
+    std::string cpu, renderer, driver, clock, version;
+    int threads = 0;
+    friend bool operator==(const SweepMachine&, const SweepMachine&) = default;
+};
+SweepMachine thisMachine(const std::string& renderer, const std::string& driver, const std::string& clock);
+
+// ---- parts
+
+// One timed frame.
+struct SweepFrame {
+    struct Step {
+        std::string pass, step, group;
+        double ms = 0;
+    };
+    double ms = 0; // wall clock of the whole frame, the scene's update included
+    std::vector<Step> steps;
+};
+
+// One turn of one point on one scene.
+struct SweepTurn {
+    int round = 0;
+    std::string machine;
+    double spinOne = 0, spinTwo = 0; // the spin test before this round, milliseconds
+    std::vector<SweepFrame> frames;
+};
+
+struct SweepErrors {
+    double mse = 0, ssim = 0, flip = 0;
+    std::optional<double> psnr; // none for equal images
+    friend bool operator==(const SweepErrors&, const SweepErrors&) = default;
+};
+
+struct SweepRayFigures {
+    double rays = 0;      // that exist
+    double hitShare = 0;  // of them that hit
+    double agreement = 0; // share of rays that hit or miss as the reference's do
+    std::optional<double>
+        distanceError; // mean |t - reference| / reference where both hit; of closest hits only
+    friend bool operator==(const SweepRayFigures&, const SweepRayFigures&) = default;
+};
+
+// Everything of one point on one scene but its times: measured once.
+struct SweepPicture {
+    std::string failed; // why there is nothing; empty: all is there
+    std::string machine;
+    std::optional<SweepErrors> errors;
+    std::optional<SweepRayFigures> rays;
+    double compileMs = 0; // of the graph, without shaders
+    double setUpMs = 0;   // shaders, resources, the scene's upload and the first frame
+    std::uint64_t transient = 0, unshared = 0, persistent = 0; // bytes
+    std::vector<LeftOut> leftOut;
+    std::map<std::string, double> reports; // "pass.key" of the last frame
+    std::string picture, heatMap;          // file names relative to the folder of the results; may be empty
+};
+
+// The reference of a scene.
+struct SweepTruth {
+    std::optional<double> noise; // as its pass reports it
+    double exposure = 1;         // that pictures of light are shown with
+    std::string picture;
+    std::map<std::string, double> reports;
+    double hitShare = 0, rays = 0; // of the reference's hits, where there are ray variants
+    std::string raysHash;
+};
+
+std::string partText(const SweepTurn& turn);
+std::string partText(const SweepPicture& picture);
+std::string partText(const SweepTruth& truth);
+std::string partText(const SweepMachine& machine);
+// Throw InputError naming `file` for what is no such part.
+SweepTurn turnOf(const std::string& text, const std::string& file);
+SweepPicture pictureOf(const std::string& text, const std::string& file);
+SweepTruth truthOf(const std::string& text, const std::string& file);
+SweepMachine machineOf(const std::string& text, const std::string& file);
+
+// ---- rows
+
+struct SweepRow {
+    std::string scene, camera, point, variant, series, along, plot;
+    std::vector<std::pair<std::string, std::string>> axes;
+    bool ray = false;
+    std::string machine; // that timed it
+    int repeats = 0;     // timed frames
+    // "total" (all steps), "frame", every group, and the times that the sweep names.
+    std::map<std::string, Quartiles> ms;
+    std::vector<std::pair<std::string, Quartiles>> steps; // "pass.step", in order of execution
+    SweepPicture picture;
+    std::optional<double> referenceNoise;
+    bool pareto = false;               // on the front of its plot and machine, in the sweep's own axes
+    std::string command, timesCommand; // make the picture again; measure the times again
+};
+
+// The times of a point over all its turns. Turns of several machines never mix: those of the machine with the
+// most count.
+void addTimes(SweepRow& row, const Sweep& sweep, const std::vector<SweepTurn>& turns);
+
+// Indices of the points that no other point beats: none is as good in both and better in one. In the order of
+// rising time. Points that are not finite are not on it.
+std::vector<size_t> paretoFront(const std::vector<std::pair<double, double>>& timeAndError);
+
+// What the sweep's plots show as error: disagreement for rays. Nothing if it was not measured.
+std::optional<double> errorOf(const SweepRow& row, const std::string& error);
+
+// Sets SweepRow::pareto, plot by plot and machine by machine.
+void markPareto(std::vector<SweepRow>& rows, const Sweep& sweep);
+
+struct SweepResults {
+    std::string hash;
+    std::vector<SweepMachine> machines;
+    std::map<std::string, std::vector<std::pair<double, double>>>
+        spins;                                // machine -> spin tests (1, 2 threads)
+    std::map<std::string, SweepTruth> truths; // by scene
+    std::vector<SweepRow> rows;
+    std::vector<std::string> missing; // "scene: point" that this folder does not hold
+};
+
+// Keys are only ever added; see the design: {"rows":[{"scene","variant","repeat_count","ms":{…},"memory",
+// "mse","psnr","ssim","flip","reference_noise","command",…}],…}. Medians in "ms", quartiles in "ms_q1",
+// "ms_q3".
+std::string resultsJson(const Sweep& sweep, const SweepResults& results);
+// One line a row, with a header; RFC 4180.
+std::string resultsCsv(const Sweep& sweep, const SweepResults& results);
+// The page: everything in one file but the pictures, which it names relative to itself.
+std::string resultsPage(const Sweep& sweep, const SweepResults& results);
+
+// The command that makes a point's picture again.
+std::string renderCommand(const Sweep& sweep, const SweepScene& scene, const SweepPoint& point);
+// A word as a shell takes it.
+std::string shellWord(const std::string& word);
+
+// ---- folders
+
+// The files of a sweep's results under one folder.
+class SweepFolder {
+public:
+    SweepFolder(std::filesystem::path folder, const Sweep& sweep);
+
+    // Makes the folder ready. A folder that holds results is refused unless `resume`; one of another sweep
+    // (hash) or, with `machine`, of another machine is refused always. Throws InputError saying so.
+    void begin(bool resume, const SweepMachine* machine) const;
+    // The hash of the results that it holds; empty if there are none.
+    [[nodiscard]] std::string heldHash() const;
+
+    [[nodiscard]] std::optional<SweepTruth> truth(const SweepScene& scene) const;
+    [[nodiscard]] std::optional<SweepPicture> picture(const SweepUnit& unit, const SweepPoint& point) const;
+    [[nodiscard]] std::vector<SweepTurn> turns(const SweepUnit& unit, const SweepPoint& point) const;
+    [[nodiscard]] bool hasTurn(const SweepUnit& unit, const SweepPoint& point, int round) const;
+    void write(const SweepScene& scene, const SweepTruth& truth) const;
+    void write(const SweepUnit& unit, const SweepPoint& point, const SweepPicture& picture) const;
+    void write(const SweepUnit& unit, const SweepPoint& point, const SweepTurn& turn) const;
+    void write(const SweepMachine& machine) const;
+
+    // Takes every part and picture of another folder of the same sweep. Throws InputError if that is of
+    // another sweep, or holds what is here already.
+    void merge(const SweepFolder& other) const;
+
+    // What it holds, as rows in the order of the sweep.
+    [[nodiscard]] SweepResults gather(const std::vector<SweepPoint>& points,
+                                      const std::vector<SweepUnit>& units) const;
+    // results.json, results.csv, index.html.
+    void writeResults(const SweepResults& results) const;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+    // Relative to path().
+    [[nodiscard]] std::string pictureName(const SweepUnit& unit, const SweepPoint& point) const;
+    [[nodiscard]] std::string heatMapName(const SweepUnit& unit, const SweepPoint& point) const;
+    [[nodiscard]] std::string truthName(const SweepScene& scene, const std::string& ending) const;
+
+private:
+    [[nodiscard]] std::filesystem::path pointFolder(const SweepUnit& unit, const SweepPoint& point) const;
+    std::filesystem::path folder_;
+    const Sweep& sweep_;
+};
+
+} // namespace kestrel

@@ -1,0 +1,419 @@
+#include "measure/sweep_run.h"
+#include "core/files.h"
+#include "core/spin.h"
+#include "execute/renderer.h"
+#include "gl/context.h"
+#include "image/colormap.h"
+#include "image/error_figures.h"
+#include "image/io.h"
+#include "shared/ray.h"
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <fmt/format.h>
+#include <set>
+
+namespace kestrel {
+namespace {
+
+using SweepClock = std::chrono::steady_clock;
+
+// Renderers stay alive between their turns while what they hold together is less; the others are made anew
+// for each turn.
+constexpr std::uint64_t sweepMemory = std::uint64_t{6} << 30;
+
+double msSince(SweepClock::time_point start) {
+    return std::chrono::duration<double, std::milli>(SweepClock::now() - start).count();
+}
+
+std::string bytesHash(std::span<const std::byte> bytes) { // FNV-1a
+    std::uint64_t hash = 0xcbf29ce484222325ULL;
+    for (const std::byte byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+    return fmt::format("{:016x}", hash);
+}
+
+// So that all but the brightest hundredth of the reference is shown without being cut off.
+double exposureFor(const Image& reference) {
+    std::vector<float> light = convertChannels(reference, 1).values;
+    std::erase_if(light, [](float value) { return !std::isfinite(value); });
+    if (light.empty()) return 1;
+    const auto at = light.begin() + static_cast<std::ptrdiff_t>(99 * (light.size() - 1) / 100);
+    std::ranges::nth_element(light, at);
+    return *at > 0 ? 1 / static_cast<double>(*at) : 1;
+}
+
+void writePicture(const std::filesystem::path& file, Image image, bool light, double exposure) {
+    if (image.channels == 4) image = convertChannels(image, 3);
+    for (float& value : image.values) value *= light ? static_cast<float>(exposure) : 1;
+    writeImage(file, image, light ? Encoding::Srgb : Encoding::Linear);
+}
+
+std::string messageOf(const Error& error) {
+    std::string text;
+    for (const Problem& problem : error.problems()) text += (text.empty() ? "" : "; ") + problem.text();
+    return text;
+}
+
+class SweepRunner {
+public:
+    SweepRunner(const Sweep& sweep, const std::vector<SweepPoint>& points, const Registry& registry,
+                gl::Context& context, const SweepMachine& machine, const SweepFolder& folder)
+        : sweep_(sweep)
+        , points_(points)
+        , registry_(registry)
+        , context_(context)
+        , machine_(machine)
+        , folder_(folder) {}
+
+    // How much there is to do, for progress: a picture counts as a turn.
+    [[nodiscard]] int workOf(const std::vector<SweepUnit>& units, const SweepOptions& options) const {
+        int work = 0;
+        for (size_t i = 0; i < units.size(); ++i)
+            if (options.shard.has(i)) work += static_cast<int>(chosenOf(units[i], options).size());
+        return work * (1 + sweep_.repeats);
+    }
+
+    void run(const std::vector<SweepUnit>& units, const SweepOptions& options) {
+        progress_ = options.progress;
+        work_ = std::max(1, workOf(units, options));
+        for (size_t i = 0; i < units.size(); ++i)
+            if (options.shard.has(i)) runUnit(units[i], chosenOf(units[i], options));
+    }
+
+private:
+    struct Candidate {
+        const SweepPoint* point = nullptr;
+        std::unique_ptr<Renderer> renderer; // empty: made for each turn
+    };
+
+    [[nodiscard]] static std::vector<int> chosenOf(const SweepUnit& unit, const SweepOptions& options) {
+        std::vector<int> chosen;
+        for (const int index : unit.points)
+            if (options.chosen.empty() || options.chosen[static_cast<size_t>(index)]) chosen.push_back(index);
+        return chosen;
+    }
+
+    void tell(const std::string& what, bool finished) {
+        done_ += finished ? 1 : 0;
+        if (progress_) progress_(static_cast<double>(done_) / work_, what);
+    }
+
+    [[nodiscard]] bool complete(const SweepUnit& unit, const std::vector<int>& chosen) const {
+        return std::ranges::all_of(chosen, [&](int index) {
+            const SweepPoint& point = points_[static_cast<size_t>(index)];
+            const auto picture = folder_.picture(unit, point);
+            if (!picture) return false;
+            if (!picture->failed.empty()) return true;
+            for (int round = 0; round < sweep_.repeats; ++round)
+                if (!folder_.hasTurn(unit, point, round)) return false;
+            return true;
+        });
+    }
+
+    // ---- a unit
+
+    void runUnit(const SweepUnit& unit, const std::vector<int>& chosen) {
+        if (chosen.empty() || complete(unit, chosen)) {
+            done_ += static_cast<int>(chosen.size()) * (1 + sweep_.repeats);
+            return;
+        }
+        const SweepScene& scene = sweep_.scenes[static_cast<size_t>(unit.scene)];
+        tell(scene.name, false);
+        loaded_ = loadScene(scene.source, sweep_.file.has_parent_path() ? sweep_.file.parent_path() : ".");
+        takeTruth(scene);
+
+        std::vector<Candidate> candidates;
+        std::uint64_t held = 0;
+        for (const int index : chosen) {
+            const SweepPoint& point = points_[static_cast<size_t>(index)];
+            tell(scene.name + ": " + point.name, false);
+            Candidate candidate{&point, nullptr};
+            if (measurePicture(unit, scene, candidate)) {
+                if (candidate.renderer) {
+                    const MemoryReport& memory = candidate.renderer->plan().memory;
+                    held += memory.transient + memory.persistent;
+                    if (held > sweepMemory) candidate.renderer.reset();
+                }
+                candidates.push_back(std::move(candidate));
+            }
+            tell(scene.name + ": " + point.name, true);
+        }
+        for (int round = 0; round < sweep_.repeats; ++round) runRound(unit, scene, candidates, round);
+    }
+
+    void runRound(const SweepUnit& unit, const SweepScene& scene, std::vector<Candidate>& candidates,
+                  int round) {
+        std::optional<SpinTest> spin; // of a round in which there is something to do
+        for (Candidate& candidate : candidates) {
+            const std::string what = fmt::format("{}: {}, turn {} of {}", scene.name, candidate.point->name,
+                                                 round + 1, sweep_.repeats);
+            if (!folder_.hasTurn(unit, *candidate.point, round)) {
+                if (!spin) spin = measureSpin();
+                SweepTurn turn{round, machine_.id, spin->oneThreadMs, spin->twoThreadsMs,
+                               timeTurn(candidate)};
+                folder_.write(unit, *candidate.point, turn);
+            }
+            tell(what, true);
+        }
+    }
+
+    // ---- renderers
+
+    [[nodiscard]] std::unique_ptr<Renderer> open(const std::string& graph,
+                                                 const std::vector<SweepSetting>& settings,
+                                                 const std::vector<PortRef>& outputs, const Location& where,
+                                                 const std::string& camera) const {
+        RenderOptions options;
+        options.size = sweep_.size;
+        options.seed = sweep_.seed;
+        options.camera = camera;
+        options.timing = true;
+        options.finishFrames = true;
+        return std::make_unique<Renderer>(sweepGraph(sweep_, graph, settings, outputs, registry_, where),
+                                          registry_, loaded_, context_.capabilities(), options);
+    }
+
+    [[nodiscard]] std::unique_ptr<Renderer> open(const SweepPoint& point, const std::string& camera) const {
+        std::vector<PortRef> outputs{point.output};
+        if (point.ray) outputs.push_back(sweep_.rays->rays);
+        return open(point.graph, point.settings, outputs, point.where, camera);
+    }
+
+    static std::map<std::string, double> reportsOf(const Renderer& renderer) {
+        std::map<std::string, double> reports;
+        for (const auto& [pass, values] : renderer.last().values)
+            for (const auto& [key, value] : values) reports[pass + "." + key] = value;
+        return reports;
+    }
+
+    // ---- the reference
+
+    void takeTruth(const SweepScene& scene) {
+        truth_ = folder_.truth(scene).value_or(SweepTruth{});
+        const bool known = folder_.truth(scene).has_value();
+        const auto file = [&](const char* ending) {
+            return folder_.path() / folder_.truthName(scene, ending);
+        };
+        reference_ = mask_ = Image();
+        distances_.clear();
+        if (known) {
+            if (sweep_.reference) reference_ = readImage(file(".exr"));
+            if (sweep_.reference && sweep_.reference->mask) mask_ = readImage(file(".mask.exr"));
+            if (sweep_.rays) {
+                const std::vector<std::byte> bytes = readBytes(file(".hits"));
+                distances_.resize(bytes.size() / sizeof(float));
+                if (!distances_.empty())
+                    std::memcpy(distances_.data(), bytes.data(), distances_.size() * sizeof(float));
+            }
+            return;
+        }
+        if (sweep_.reference) {
+            renderReference(scene);
+            writeImage(file(".exr"), reference_, Encoding::Linear);
+            if (!mask_.empty()) writeImage(file(".mask.exr"), mask_, Encoding::Linear);
+            truth_.picture = folder_.truthName(scene, ".png");
+            writePicture(folder_.path() / truth_.picture, reference_, sweep_.hdr, truth_.exposure);
+        }
+        if (sweep_.rays) {
+            traceReference(scene);
+            writeFile(file(".hits"), std::as_bytes(std::span(distances_)));
+        }
+        folder_.write(scene, truth_); // last: it says that the others are whole
+    }
+
+    void renderReference(const SweepScene& scene) {
+        const SweepReference& asked = *sweep_.reference;
+        tell(scene.name + ": the reference", false);
+        std::vector<PortRef> outputs{asked.output};
+        if (asked.mask) outputs.push_back(*asked.mask);
+        const auto renderer = open(asked.graph, asked.settings, outputs, asked.where, scene.camera);
+        for (int i = 0; i < asked.frames; ++i) static_cast<void>(renderer->frame());
+        reference_ = renderer->read(asked.output);
+        if (asked.mask) mask_ = convertChannels(renderer->read(*asked.mask), 1);
+        const bool blank = std::ranges::none_of(mask_.values, [](float value) { return value > 0.5F; });
+        if (asked.mask && blank)
+            throw InputError(asked.where,
+                             fmt::format("the mask {} is 0 everywhere on the scene '{}': no pixel "
+                                         "counts",
+                                         asked.mask->text(), scene.name));
+        truth_.exposure = sweep_.hdr ? exposureFor(reference_) : 1;
+        truth_.reports = reportsOf(*renderer);
+        const auto noise = truth_.reports.find(asked.output.pass + ".noise");
+        if (noise != truth_.reports.end()) truth_.noise = noise->second;
+    }
+
+    void traceReference(const SweepScene& scene) {
+        const SweepRays& asked = *sweep_.rays;
+        tell(scene.name + ": the reference's rays", false);
+        const auto renderer =
+            open(asked.graph, asked.settings, {asked.hits, asked.rays}, asked.where, scene.camera);
+        for (int i = 0; i < sweep_.frames; ++i) static_cast<void>(renderer->frame());
+        const std::vector<std::byte> rays = renderer->readBytes(asked.rays);
+        distances_ = hitDistances(renderer->readBytes(asked.hits));
+        const SweepRayFigures figures = compareHits(rays, distances_, distances_);
+        truth_.rays = figures.rays;
+        truth_.hitShare = figures.hitShare;
+        truth_.raysHash = bytesHash(rays);
+    }
+
+    // ---- pictures
+
+    // False if it failed. A renderer is left in the candidate where it was needed.
+    bool measurePicture(const SweepUnit& unit, const SweepScene& scene, Candidate& candidate) {
+        const SweepPoint& point = *candidate.point;
+        camera_ = scene.camera;
+        if (const auto held = folder_.picture(unit, point)) {
+            if (!held->failed.empty()) return false;
+            candidate.renderer = open(point, camera_);
+            static_cast<void>(candidate.renderer->frame());
+            return true;
+        }
+        SweepPicture picture;
+        picture.machine = machine_.id;
+        try {
+            makePicture(unit, candidate, picture);
+        } catch (const Error& error) {
+            picture = {};
+            picture.machine = machine_.id;
+            picture.failed = messageOf(error);
+            candidate.renderer.reset();
+        }
+        folder_.write(unit, point, picture);
+        return picture.failed.empty();
+    }
+
+    void makePicture(const SweepUnit& unit, Candidate& candidate, SweepPicture& picture) {
+        const SweepPoint& point = *candidate.point;
+        const auto start = SweepClock::now();
+        candidate.renderer = open(point, camera_);
+        Renderer& renderer = *candidate.renderer;
+        static_cast<void>(renderer.frame());
+        picture.setUpMs = msSince(start);
+        for (int i = 1; i < point.frames; ++i) static_cast<void>(renderer.frame());
+        picture.compileMs = renderer.compileMs();
+        picture.transient = renderer.plan().memory.transient;
+        picture.unshared = renderer.plan().memory.unshared;
+        picture.persistent = renderer.plan().memory.persistent;
+        picture.leftOut = renderer.plan().leftOut;
+        picture.reports = reportsOf(renderer);
+        if (point.ray)
+            compareRays(renderer, point, picture);
+        else
+            compareImage(renderer, unit, point, picture);
+    }
+
+    void compareRays(Renderer& renderer, const SweepPoint& point, SweepPicture& picture) {
+        const std::vector<std::byte> rays = renderer.readBytes(sweep_.rays->rays);
+        if (bytesHash(rays) != truth_.raysHash)
+            throw InputError(point.where,
+                             "traces other rays than the reference: graph, settings or frames that make "
+                             "the rays differ");
+        picture.rays = compareHits(rays, hitDistances(renderer.readBytes(point.output)), distances_);
+    }
+
+    void compareImage(Renderer& renderer, const SweepUnit& unit, const SweepPoint& point,
+                      SweepPicture& picture) {
+        const Image image = renderer.read(point.output);
+        Image map;
+        const ErrorFigures figures = measureError(
+            reference_, image, {.hdr = sweep_.hdr, .mask = mask_.empty() ? nullptr : &mask_}, &map);
+        picture.errors = SweepErrors{figures.mse, figures.ssim, figures.flip.mean, std::nullopt};
+        if (std::isfinite(figures.psnr)) picture.errors->psnr = figures.psnr;
+        picture.picture = folder_.pictureName(unit, point);
+        picture.heatMap = folder_.heatMapName(unit, point);
+        writePicture(folder_.path() / picture.picture, image, sweep_.hdr, truth_.exposure);
+        writeImage(folder_.path() / picture.heatMap, heatMap(map), Encoding::Linear);
+    }
+
+    // ---- times
+
+    std::vector<SweepFrame> timeTurn(Candidate& candidate) {
+        std::unique_ptr<Renderer> own;
+        if (!candidate.renderer) own = open(*candidate.point, camera_);
+        Renderer& renderer = own ? *own : *candidate.renderer;
+        // A renderer that was just made has everything to build in its first frame.
+        const int warmUp = sweep_.warmUp + (own && sweep_.warmUp == 0 ? 1 : 0);
+        for (int i = 0; i < warmUp; ++i) nextFrame(renderer);
+        std::vector<SweepFrame> frames;
+        for (int i = 0; i < sweep_.timedFrames; ++i) {
+            nextFrame(renderer);
+            SweepFrame frame;
+            frame.ms = renderer.last().ms;
+            for (const StepSample& sample : renderer.last().samples)
+                frame.steps.push_back({sample.pass, sample.step, sample.group, sample.ms});
+            frames.push_back(std::move(frame));
+        }
+        return frames;
+    }
+
+    void nextFrame(Renderer& renderer) const {
+        if (sweep_.rebuild) renderer.restart();
+        static_cast<void>(renderer.frame());
+    }
+
+    const Sweep& sweep_;
+    const std::vector<SweepPoint>& points_;
+    const Registry& registry_;
+    gl::Context& context_;
+    const SweepMachine& machine_;
+    const SweepFolder& folder_;
+    std::function<void(double, const std::string&)> progress_;
+    int work_ = 1, done_ = 0;
+
+    Scene loaded_;
+    std::string camera_;
+    SweepTruth truth_;
+    Image reference_, mask_;
+    std::vector<float> distances_; // of the reference's hits
+};
+
+} // namespace
+
+std::vector<float> hitDistances(std::span<const std::byte> hits) {
+    std::vector<float> distances(hits.size() / sizeof(shared::HitRecord));
+    for (size_t i = 0; i < distances.size(); ++i) {
+        shared::HitRecord record;
+        std::memcpy(&record, hits.data() + i * sizeof(record), sizeof(record));
+        distances[i] = record.t;
+    }
+    return distances;
+}
+
+SweepRayFigures compareHits(std::span<const std::byte> rays, const std::vector<float>& distances,
+                            const std::vector<float>& reference) {
+    const size_t count = rays.size() / sizeof(shared::RayRecord);
+    if (distances.size() != count || reference.size() != count)
+        throw InputError(
+            fmt::format("{} rays, {} hits and {} hits of the reference cannot be held against each "
+                        "other",
+                        count, distances.size(), reference.size()));
+    double exist = 0, hit = 0, agree = 0, both = 0, error = 0;
+    for (size_t i = 0; i < count; ++i) {
+        shared::RayRecord ray;
+        std::memcpy(&ray, rays.data() + i * sizeof(ray), sizeof(ray));
+        if ((ray.flags & 1U) == 0) continue;
+        const bool here = std::isfinite(distances[i]), there = std::isfinite(reference[i]);
+        exist += 1;
+        hit += here ? 1 : 0;
+        agree += here == there ? 1 : 0;
+        if (!here || !there || !(reference[i] > 0) || !(distances[i] > 0)) continue;
+        both += 1;
+        error += std::abs(static_cast<double>(distances[i]) - reference[i]) / reference[i];
+    }
+    SweepRayFigures figures;
+    figures.rays = exist;
+    figures.hitShare = exist > 0 ? hit / exist : 0;
+    figures.agreement = exist > 0 ? agree / exist : 1;
+    if (both > 0) figures.distanceError = error / both;
+    return figures;
+}
+
+void runSweep(const Sweep& sweep, const std::vector<SweepPoint>& points, const std::vector<SweepUnit>& units,
+              const Registry& registry, gl::Context& context, const SweepMachine& machine,
+              const SweepFolder& folder, const SweepOptions& options) {
+    folder.write(machine);
+    SweepRunner(sweep, points, registry, context, machine, folder).run(units, options);
+}
+
+} // namespace kestrel
