@@ -16,7 +16,8 @@ Defines AlignedMaps::defines() const {
 
 Desc AlignedMaps::directionsDesc() const {
     return Desc::buffer(sizeof(shared::OccupancySettings) +
-                        sizeof(shared::RomaDirection) * static_cast<std::uint64_t>(directions));
+                        sizeof(shared::RomaDirection) * static_cast<std::uint64_t>(directions),
+                        Format::RGBA32F);
 }
 
 Desc AlignedMaps::rotationsDesc() const {

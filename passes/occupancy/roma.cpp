@@ -48,7 +48,7 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
                   .shader = "occupancy/roma.glsl",
                   .defines = maps.defines(),
                   .uses = {{.port = "grid", .access = Access::Uniform},
-                           {.port = "directions", .access = Access::Uniform}},
+                           {.port = "directions", .access = Access::Image}},
                   .modules = {}};
     tracer.defines["ANGULAR"] = std::to_string(angular);
     tracer.defines["ITERATIONS"] = std::to_string(iterations);

@@ -90,7 +90,7 @@ Declaration RomaCascade::declare(const World& world, const Inputs&, const Demand
                   .shader = "occupancy/roma_cascade.glsl",
                   .defines = maps.defines(),
                   .uses = {{.port = "grids", .access = Access::Uniform},
-                           {.port = "directions", .access = Access::Uniform}},
+                           {.port = "directions", .access = Access::Image}},
                   .modules = {}};
     tracer.defines["LEVELS"] = std::to_string(levels);
     tracer.defines["ANGULAR"] = std::to_string(angular);

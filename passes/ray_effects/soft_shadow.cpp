@@ -63,7 +63,9 @@ PassType SoftShadow::type() {
         .number("rays", &SoftShadow::rays, 1, 256, "rays",
                 "Rays a pixel and frame, for all emitters together")
         .flag("emission", &SoftShadow::emission,
-              "Emissive meshes shine too, but for those that only show where an area light is");
+              "Emissive meshes shine too, but for those that only show where an area light is")
+        .flag("snap", &SoftShadow::snap,
+              "Bears that a tracer replaces directions by nearby ones: faster, and shadows fall wrongly");
 }
 
 Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
@@ -126,7 +128,8 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
                            {.port = "normal", .access = Access::Fetch},
                            {.port = "emitters", .access = Access::Image},
                            {.port = "result", .access = Access::Image, .write = true}},
-                  .modules = {{"tracer", approximate ? takes::ClosestHit : takes::AnyHit}},
+                  .modules = {{"tracer", (approximate ? takes::ClosestHit : takes::AnyHit) |
+                                             (snap ? takes::BearsSnap : 0)}},
                   .group = "tracing"};
         step.defines.merge(materialDefines(world.facts));
         if (meshes || rectangles) step.defines.emplace("FLAT_EMITTERS", "1");

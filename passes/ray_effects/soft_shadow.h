@@ -18,7 +18,7 @@ public:
     void execute(const Step& step, Commands& commands) override;
 
     int rays = 1;
-    bool emission = true;
+    bool emission = true, snap = false;
 
 private:
     void upload(Commands& commands);

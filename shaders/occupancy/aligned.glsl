@@ -5,6 +5,13 @@
 // In a ray's token beside its map: it goes against the map's z axis.
 const uint alignedFlipped = 0x80000000u;
 
+// The buffer `directions` by texels: settings, then three texels a candidate. An element that each ray chooses for itself
+// is read several times as fast by texels as from a uniform block.
+OccupancySettings alignedSettings(vec4 texel) { return OccupancySettings(texel.x, texel.y, texel.z, texel.w); }
+RomaDirection alignedCandidate(vec4 a, vec4 b, vec4 c) {
+    return RomaDirection(a.xyz, a.w, b.xyz, b.w, c.x, c.y, c.z, c.w);
+}
+
 int alignedMap(Ray ray) { return int(ray.token & 0xffffu); }
 bool alignedUp(Ray ray) { return (ray.token & alignedFlipped) == 0u; }
 

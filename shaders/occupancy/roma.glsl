@@ -39,10 +39,12 @@
 #endif
 
 layout(std140) uniform M(Grid) { OccupancyGrid M(grid); };
-layout(std140) uniform M(Directions) {
-    OccupancySettings M(settings);
-    RomaDirection M(candidates)[DIRECTIONS];
-};
+layout(rgba32f) readonly uniform imageBuffer M(directions);
+OccupancySettings M(settings)() { return alignedSettings(imageLoad(M(directions), 0)); }
+RomaDirection M(candidate)(int map) {
+    int at = 1 + 3 * map;
+    return alignedCandidate(imageLoad(M(directions), at), imageLoad(M(directions), at + 1), imageLoad(M(directions), at + 2));
+}
 
 #ifdef COUNT_EXHAUSTED
 layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
@@ -51,7 +53,7 @@ layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
 void M(aim)(inout Ray ray) {
     aimAligned(ray, ANGULAR);
 #ifdef TAKES_SNAP
-    snapAligned(ray, M(candidates)[alignedMap(ray)]);
+    snapAligned(ray, M(candidate)(alignedMap(ray)));
 #endif
 }
 
@@ -82,7 +84,7 @@ OccupancyColumn M(column)(int map, ivec2 at) {
 
 // The origin, moved off the surface, in the cell coordinates of the map along `axis`.
 vec3 M(alignedOrigin)(Ray ray, vec3 axis) {
-    return align(occupancyOrigin(M(grid), M(settings), ray), axis) + vec3(RESOLUTION / 2);
+    return align(occupancyOrigin(M(grid), M(settings)(), ray), axis) + vec3(RESOLUTION / 2);
 }
 
 #ifdef TAKES_SNAP
@@ -103,7 +105,7 @@ M(Way) M(way)(Ray ray) {
     way.map = alignedMap(ray);
     way.up = alignedUp(ray);
     vec3 origin = M(alignedOrigin)(ray, way.up ? ray.direction : -ray.direction);
-    float from = occupancyBegin(M(grid), M(settings), ray);
+    float from = occupancyBegin(M(grid), M(settings)(), ray);
     float to = ray.tMax * M(grid).inverseCellSize;
     way.at = ivec2(floor(clamp(origin.xy, vec2(-1.0), vec2(RESOLUTION))));
     way.first = cellAt(way.up ? origin.z + from : origin.z - to, RESOLUTION);
@@ -137,10 +139,10 @@ bool M(closestHit)(Ray ray, out Hit hit) {
 // The nearest occupied cell in [tMin, tMax]; `nearest` false stops at any. -1 if there is none, and t in cells otherwise.
 int M(walk)(Ray ray, bool nearest, out float t) {
     int map = alignedMap(ray);
-    vec3 axis = M(candidates)[map].direction;
+    vec3 axis = M(candidate)(map).direction;
     t = 0.0;
     ColumnWalk walk = beginWalk(M(alignedOrigin)(ray, axis), align(ray.direction, axis),
-                                occupancyBegin(M(grid), M(settings), ray), ray.tMax * M(grid).inverseCellSize, RESOLUTION);
+                                occupancyBegin(M(grid), M(settings)(), ray), ray.tMax * M(grid).inverseCellSize, RESOLUTION);
     if (!walk.some) return -1;
     int cell = -1;
     bool finished = false;

@@ -26,10 +26,12 @@
 #endif
 
 layout(std140) uniform M(Grids) { OccupancyGrid M(grids)[LEVELS]; };
-layout(std140) uniform M(Directions) {
-    OccupancySettings M(settings);
-    RomaDirection M(candidates)[DIRECTIONS];
-};
+layout(rgba32f) readonly uniform imageBuffer M(directions);
+OccupancySettings M(settings)() { return alignedSettings(imageLoad(M(directions), 0)); }
+RomaDirection M(candidate)(int map) {
+    int at = 1 + 3 * map;
+    return alignedCandidate(imageLoad(M(directions), at), imageLoad(M(directions), at + 1), imageLoad(M(directions), at + 2));
+}
 
 #ifdef COUNT_EXHAUSTED
 layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
@@ -38,7 +40,7 @@ layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
 void M(aim)(inout Ray ray) {
     aimAligned(ray, ANGULAR);
 #ifdef TAKES_SNAP
-    snapAligned(ray, M(candidates)[alignedMap(ray)]);
+    snapAligned(ray, M(candidate)(alignedMap(ray)));
 #endif
 }
 
@@ -84,7 +86,7 @@ vec2 M(throughSphere)(Ray ray, OccupancyGrid grid) {
 // The stretches of the ray that a level answers for, in its cells: (xy) before the finer level's sphere, (zw) beyond it.
 // `finer` is the ray's way through the finer sphere; entering after leaving: it misses it.
 vec4 M(stretches)(Ray ray, int level, OccupancyGrid grid, vec2 own, vec2 finer) {
-    float from = occupancyBegin(grid, M(settings), ray);
+    float from = occupancyBegin(grid, M(settings)(), ray);
     float to = ray.tMax * grid.inverseCellSize;
     if (level < LEVELS - 1) {
         from = max(from, own.x * grid.inverseCellSize);
@@ -97,7 +99,7 @@ vec4 M(stretches)(Ray ray, int level, OccupancyGrid grid, vec2 own, vec2 finer) 
 
 // The origin, moved off the surface, in the cell coordinates of a level's map along `axis`.
 vec3 M(alignedOrigin)(Ray ray, OccupancyGrid grid, vec3 axis) {
-    return align(occupancyOrigin(grid, M(settings), ray), axis) + vec3(RESOLUTION / 2);
+    return align(occupancyOrigin(grid, M(settings)(), ray), axis) + vec3(RESOLUTION / 2);
 }
 
 #ifdef TAKES_SNAP
@@ -127,7 +129,7 @@ float M(find)(Ray ray, int level, OccupancyGrid grid, vec2 own, vec2 finer, out 
 
 float M(find)(Ray ray, int level, OccupancyGrid grid, vec2 own, vec2 finer, out int cell) {
     int map = alignedMap(ray);
-    vec3 axis = M(candidates)[map].direction;
+    vec3 axis = M(candidate)(map).direction;
     vec3 origin = M(alignedOrigin)(ray, grid, axis);
     vec3 direction = align(ray.direction, axis);
     vec4 stretches = M(stretches)(ray, level, grid, own, finer);

@@ -9,7 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 uniform sampler2D depth;
 layout(rgba16f) uniform readonly image2D normal;
-layout(std430) writeonly buffer Rays { RayRecord rays[]; };
+layout(std430) writeonly buffer Rays { vec4 rays[]; }; // RayRecord by texels: its members one by one cost twice the time
 layout(std140) uniform DepthView { ViewData depthView; };
 uniform float maximumDistance; // 0: unbounded
 
@@ -23,12 +23,9 @@ void main() {
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
     vec2 u = scrambledSobol(frame.index, pixelSeed(uvec2(pixel), randomRayDirection, frame.seed));
-    RayRecord ray;
-    ray.origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
-    ray.tMin = 0.0;
-    ray.direction = cosineHemisphere(u, n);
-    ray.tMax = maximumDistance > 0.0 ? maximumDistance : uintBitsToFloat(0x7f800000u);
-    ray.normal = n;
-    ray.flags = background ? 0u : 1u;
-    rays[pixel.y * size.x + pixel.x] = ray;
+    float tMax = maximumDistance > 0.0 ? maximumDistance : uintBitsToFloat(0x7f800000u);
+    int at = 3 * (pixel.y * size.x + pixel.x);
+    rays[at] = vec4(positionFromDepth(depthView, vec2(pixel) + 0.5, z), 0.0);
+    rays[at + 1] = vec4(cosineHemisphere(u, n), tMax);
+    rays[at + 2] = vec4(n, uintBitsToFloat(background ? 0u : 1u));
 }

@@ -6,30 +6,47 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(std430) readonly buffer Rays { RayRecord rays[]; };
+#ifdef RAYS_STORAGE
+layout(std430) readonly buffer Rays { vec4 rays[]; };
+#define RAY_TEXEL(index) rays[index]
+#define RAY_TEXELS rays.length()
+#else
+layout(rgba32f) readonly uniform imageBuffer rays;
+#define RAY_TEXEL(index) imageLoad(rays, index)
+#define RAY_TEXELS imageSize(rays)
+#endif
+#ifdef HITS
 layout(std430) writeonly buffer Hits { HitRecord hits[]; };
+#endif
+#ifdef DISTANCES
+layout(std430) writeonly buffer Distance { float distances[]; };
+#endif
 
 void main() {
-    uint id = gl_GlobalInvocationID.y * uint(GROUPS_PER_ROW * GROUP_SIZE) + gl_GlobalInvocationID.x;
-    if (id >= uint(rays.length())) return;
-    RayRecord record = rays[id];
-    Ray ray = Ray(record.origin, record.normal, record.direction, record.tMin, record.tMax, 1.0, 0u);
-    bool exists = (record.flags & 1u) != 0u;
+    int id = int(gl_GlobalInvocationID.y) * GROUPS_PER_ROW * GROUP_SIZE + int(gl_GlobalInvocationID.x);
+    if (3 * id >= RAY_TEXELS) return;
+    // RayRecord, texel by texel.
+    vec4 from = RAY_TEXEL(3 * id);
+    vec4 along = RAY_TEXEL(3 * id + 1);
+    vec4 surface = RAY_TEXEL(3 * id + 2);
+    Ray ray = Ray(from.xyz, surface.xyz, along.xyz, from.w, along.w, 1.0, 0u);
+    bool exists = (floatBitsToUint(surface.w) & 1u) != 0u;
     ray.tMax = exists ? ray.tMax : -1.0;
     tracer_aim(ray);
-    HitRecord result = HitRecord(rayInfinity, ray.weight, 0u, 0u, ray.direction, 0u);
+    Hit hit = noHit;
     TRIPS_BEGIN;
 #ifdef CLOSEST
-    Hit hit;
-    if (tracer_closestHit(ray, hit) && exists) {
-        result.t = hit.t;
-        result.idX = hit.id.x;
-        result.idY = hit.id.y;
-        result.source = hit.source;
-    }
+    bool met = tracer_closestHit(ray, hit) && exists;
 #else
-    if (tracer_anyHit(ray) && exists) result.t = 0.0;
+    bool met = tracer_anyHit(ray) && exists;
+    hit.t = 0.0;
 #endif
     TRIPS_END;
-    hits[id] = result;
+    float t = met ? hit.t : rayInfinity;
+#ifdef DISTANCES
+    distances[id] = t;
+#endif
+#ifdef HITS
+    hits[id] = HitRecord(t, ray.weight, met ? hit.id.x : 0u, met ? hit.id.y : 0u, ray.direction, met ? hit.source : 0u);
+#endif
 }

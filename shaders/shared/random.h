@@ -54,23 +54,26 @@ inline uint laineKarras(uint x, uint seed) {
 
 inline uint owenScramble(uint x, uint seed) { return reverseBits32(laineKarras(reverseBits32(x), seed)); }
 
-// Second dimension of the Sobol sequence; the first is reverseBits32.
-inline uint sobol1(uint index) {
-    uint result = 0u;
-    uint direction = 0x80000000u;
-    for (uint bits = index; bits != 0u; bits >>= 1u) {
-        if ((bits & 1u) != 0u) result ^= direction;
-        direction ^= direction >> 1u;
-    }
-    return result;
+// Second dimension of the Sobol sequence, its bits reversed; the first, reversed, is the index itself. Its matrix is
+// Pascal's triangle modulo 2, where an entry (k, j) is odd if the bits of j are among those of k: so each bit is the sum of
+// those whose places contain its own, which five steps add up for all bits at once.
+inline uint reversedSobol1(uint index) {
+    uint x = index;
+    x ^= (x & 0xaaaaaaaau) >> 1u;
+    x ^= (x & 0xccccccccu) >> 2u;
+    x ^= (x & 0xf0f0f0f0u) >> 4u;
+    x ^= (x & 0xff00ff00u) >> 8u;
+    x ^= x >> 16u;
+    return x;
 }
 
 // Sample `index` of the (0,2)-sequence that belongs to `seed`: shuffled and Owen-scrambled Sobol points (Burley,
 // "Practical Hash-based Owen Scrambling", 2020). Any 2^k consecutive samples from a multiple of 2^k are stratified.
 inline vec2 scrambledSobol(uint index, uint seed) {
     uint shuffled = owenScramble(index, seed);
-    uint x = owenScramble(reverseBits32(shuffled), hashCombine(seed, 1u));
-    uint y = owenScramble(sobol1(shuffled), hashCombine(seed, 2u));
+    // Owen scrambling without turning the bits round and back in between.
+    uint x = reverseBits32(laineKarras(shuffled, hashCombine(seed, 1u)));
+    uint y = reverseBits32(laineKarras(reversedSobol1(shuffled), hashCombine(seed, 2u)));
     return vec2(unitFloat(x), unitFloat(y));
 }
 
