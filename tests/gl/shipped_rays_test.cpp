@@ -39,6 +39,43 @@ TEST_F(Rays, TheBvhInGlslFindsWhatTheCpuFinds) {
     EXPECT_LE(different, traced / 1000);
 }
 
+// The same rays through the BVH and through Embree; and the short answer is that of the long one.
+TEST_F(Rays, QueriesAgreeWithEmbree) {
+    if (shipped().find("ReferenceRayQuery") == nullptr) GTEST_SKIP() << "Embree is not built in";
+    std::string text(readText(shareFolder() / "graphs/ray_query.json"));
+    const auto insert = [&](const std::string& before, const std::string& what) {
+        text.insert(text.find(before), what);
+    };
+    insert("\"by_bvh\": {", "\"by_embree\": { \"type\": \"ReferenceRayQuery\" }, ");
+    insert("[\"rays.rays\", \"by_bvh.rays\"]", "[\"rays.rays\", \"by_embree.rays\"], ");
+    insert("\"by_bvh.hits\"]", "\"by_bvh.distance\", \"by_embree.hits\", ");
+    for (const std::string query : {"any", "closest"}) {
+        SCOPED_TRACE(query);
+        Graph graph = parseGraph(text, "ray_query.json");
+        for (const char* pass : {"by_bvh", "by_embree"})
+            applySetting(graph, shipped(), std::string(pass) + ".query=" + query);
+        Renderer made = renderer(graph, loadScene("builtin:grove?detail=0.02"));
+        made.frame();
+        const auto embree = as<shared::HitRecord>(made.readBytes({"by_embree", "hits"}));
+        const auto bvh = as<shared::HitRecord>(made.readBytes({"by_bvh", "hits"}));
+        const auto distances = as<float>(made.readBytes({"by_bvh", "distance"}));
+        ASSERT_EQ(embree.size(), bvh.size());
+        ASSERT_EQ(embree.size(), distances.size());
+        size_t different = 0, met = 0;
+        for (size_t i = 0; i < bvh.size(); ++i) {
+            EXPECT_EQ(bvh[i].t, distances[i]);
+            met += std::isfinite(embree[i].t) ? 1 : 0;
+            const bool same = std::isfinite(bvh[i].t) == std::isfinite(embree[i].t);
+            const bool near = !std::isfinite(bvh[i].t) ||
+                              std::abs(bvh[i].t - embree[i].t) <= 1e-4f * (1 + std::abs(embree[i].t));
+            different += same && near ? 0 : 1;
+        }
+        EXPECT_GT(met, bvh.size() / 20);
+        // Rays that graze an edge, or the rim of a masked leaf, may fall to either side.
+        EXPECT_LE(different, bvh.size() / 200);
+    }
+}
+
 TEST_F(Rays, EveryHitIsCountedAsByEmbree) {
     if (shipped().find("ReferenceAmbientOcclusion") == nullptr) GTEST_SKIP() << "Embree is not built in";
     const Scene scene = loadScene("builtin:lattice?detail=0.1");
