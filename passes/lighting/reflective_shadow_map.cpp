@@ -27,15 +27,17 @@ constexpr MapTarget mapTargets[] = {
 } // namespace
 
 PassType ReflectiveShadowMap::type() {
-    Describe<ReflectiveShadowMap> table(
-        "ReflectiveShadowMap", "What spot and point lights see, with the light that is reflected there");
+    Describe<ReflectiveShadowMap> table("ReflectiveShadowMap",
+                                        "What lights see, with the light that is reflected there");
     table.output("radiance", PortKind::Radiance,
                  "Light of the maps that leaves a hit, one diffuse reflection; needs positions only");
     for (const MapTarget& target : mapTargets) table.output(target.port, PortKind::Texture, target.sentence);
     table.output("map_depth", PortKind::Texture, "Reversed depth of the maps")
         .output("maps", PortKind::Buffer, "How the maps lie (shared/light_map.h), and the lights")
         .number("resolution", &ReflectiveShadowMap::resolution, 16, 8192, "texels",
-                "Width of a map; a point light has six")
+                "Width of a map; a point or sphere light has six, a rectangle five")
+        .flag("area_lights", &ReflectiveShadowMap::areaLights,
+              "Maps rectangles and spheres too, as seen from their middle")
         .flag("directional", &ReflectiveShadowMap::directional, "Maps directional lights too")
         .flag("jitter", &ReflectiveShadowMap::jitter,
               "Displaces the maps by parts of a texel, differently every frame")
@@ -47,7 +49,7 @@ PassType ReflectiveShadowMap::type() {
 }
 
 LightMapLayout ReflectiveShadowMap::layout(const SceneFacts& facts) const {
-    return lightMapLayout(facts, {true, true, directional, false, false}, true);
+    return lightMapLayout(facts, {true, true, directional, areaLights, areaLights}, true);
 }
 
 Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, const Demand& demand) const {
@@ -89,10 +91,9 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
         declaration.outputs.push_back(std::move(depth));
         declaration.outputs.push_back(std::move(block));
         declaration.modules.push_back(std::move(module));
-        declaration.leftOut.push_back({"maps", world.facts.triangles == 0 ? "the scene has no triangle"
-                                               : directional
-                                                   ? "the scene has no spot, point or directional light"
-                                                   : "the scene has no spot or point light"});
+        declaration.leftOut.push_back({"maps", world.facts.triangles == 0
+                                                   ? "the scene has no triangle"
+                                                   : "the scene has no light that is mapped"});
         return declaration;
     }
     if (const auto mistake = lightMapMistake(maps, resolution, bytes))
@@ -116,8 +117,8 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
     if (world.facts.spotLights == 0) declaration.leftOut.push_back({"spot lights", "the scene has none"});
     if (world.facts.directionalLights > 0 && !directional)
         declaration.leftOut.push_back({"directional lights", "they were not asked for"});
-    if (world.facts.rectangleLights + world.facts.sphereLights > 0)
-        declaration.leftOut.push_back({"area lights", "a map is seen from one point"});
+    if (!areaLights && world.facts.rectangleLights + world.facts.sphereLights > 0)
+        declaration.leftOut.push_back({"area lights", "they were not asked for"});
     if (!world.facts.hasMasked)
         declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
     declaration.depends =

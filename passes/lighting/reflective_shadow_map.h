@@ -17,6 +17,7 @@ public:
 
     int resolution = 512;
     bool directional = false;
+    bool areaLights = true;
     bool jitter = false;
     float positionJitter = 0;
     float bias = 1.5f;

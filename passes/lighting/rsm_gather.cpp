@@ -4,12 +4,14 @@
 namespace kestrel {
 namespace {
 
-// Which lights the maps' producer mapped: with directional ones or without, by the size of its block.
+// Which lights the maps' producer mapped: with directional and area lights or without, by the size of its
+// block.
 std::optional<LightMapLayout> layoutOf(const SceneFacts& facts, const Desc& block) {
-    for (const bool directional : {false, true}) {
-        LightMapLayout layout = lightMapLayout(facts, {true, true, directional, false, false}, true);
-        if (layout.lights() > 0 && layout.blockBytes() == block.bytes) return layout;
-    }
+    for (const bool area : {true, false})
+        for (const bool directional : {false, true}) {
+            LightMapLayout layout = lightMapLayout(facts, {true, true, directional, area, area}, true);
+            if (layout.lights() > 0 && layout.blockBytes() == block.bytes) return layout;
+        }
     return {};
 }
 

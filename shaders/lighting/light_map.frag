@@ -35,9 +35,8 @@ void main() {
 #endif
 #ifndef SHADOW
     vec3 origin = light_maps[map_slot].origin;
-    vec3 toLight;
-    float distanceToLight;
-    vec3 arriving = punctualLight(light_map_lights[map_slot], vertex.position, toLight, distanceToLight);
+    LightRecord light = light_map_lights[map_slot];
+    vec3 toLight = light.kind == lightKindDirectional ? -light.direction : normalize(light.position - vertex.position);
     uvec4 corners = sceneTriangle(fragmentTriangle());
     vec3 face = faceNormal(scenePosition(corners.x), scenePosition(corners.y), scenePosition(corners.z), toLight);
     float side = dot(face, toLight) < 0.0 ? -1.0 : 1.0;
@@ -51,7 +50,7 @@ void main() {
     vec3 n = side * materialNormal(material, coords, smoothNormal, tangent);
     MaterialSample point = materialAt(material, coords, colour);
     vec3 albedo = point.baseColour.rgb * (1.0 - point.metallic);
-    vec3 reflected = albedo / pi * arriving * max(0.0, dot(n, toLight));
+    vec3 reflected = albedo / pi * lightIrradiance(light, vertex.position, n);
     out_map_radiance = vec4(min(reflected, vec3(65504.0)), 1.0); // the largest half float, never infinity
 #endif
 #ifdef OUT_NORMAL

@@ -1,4 +1,5 @@
-// The module `radiance` by reflective shadow maps: one diffuse reflection of point, spot and directional lights.
+// The module `radiance` by reflective shadow maps: one diffuse reflection of the light of each kind. Area lights
+// are seen from their middle: what that sees receives their whole light, as in DirectLight.
 //
 // A hit counts as the surface that a texel holds if it lies within a tolerance of that surface's plane: so many texels as `bias` (a curved
 // surface leaves its plane within one) and the error that the hit's tracer states. Distance from the plane, not along the
@@ -40,6 +41,14 @@ vec3 M(surface)(Surface at, vec3 toward) {
         sum += M(fromMap)(slot, at, toward);
     }
     FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS, DIRECTIONAL_LIGHTS, M(counts).directionals) {
+        TRIP;
+        sum += M(fromMap)(slot, at, toward);
+    }
+    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, M(counts).rectangles) {
+        TRIP;
+        sum += M(fromMap)(slot, at, toward);
+    }
+    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS + RECTANGLE_LIGHTS, SPHERE_LIGHTS, M(counts).spheres) {
         TRIP;
         sum += M(fromMap)(slot, at, toward);
     }

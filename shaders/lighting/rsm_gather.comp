@@ -118,6 +118,16 @@ void main() {
         TRIP;
         light += gathered(slot, hashCombine(seed, slot), first);
     }
+    TRIPS_BEGIN;
+    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, counts.rectangles) {
+        TRIP;
+        light += gathered(slot, hashCombine(seed, slot), first);
+    }
+    TRIPS_BEGIN;
+    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS + RECTANGLE_LIGHTS, SPHERE_LIGHTS, counts.spheres) {
+        TRIP;
+        light += gathered(slot, hashCombine(seed, slot), first);
+    }
     TRIPS_END;
     imageStore(result, pixel, vec4(background ? vec3(0.0) : min(light, vec3(1e30)), 1.0));
 }
