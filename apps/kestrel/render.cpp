@@ -19,7 +19,7 @@ struct RenderArguments : GraphArguments {
     std::uint32_t seed = 0;
     std::string folder, stats, backend = "egl";
     std::vector<std::string> outputs;
-    bool keepAll = false, noSharing = false, checkFinite = false;
+    bool keepAll = false, noSharing = false, checkFinite = false, still = false;
 };
 
 void renderFrames(Renderer& renderer, int frames, Profile& profile, ProgressBar& progress) {
@@ -68,6 +68,7 @@ int render(const RenderArguments& arguments) {
     ProgressBar progress("render");
     options.progress = [&](const std::string& step, double fraction) { progress.update(fraction, step); };
     Renderer renderer(graph, registry, std::move(scene), context->capabilities(), options);
+    renderer.setPaused(arguments.still);
     for (const OutputFile& output : outputs) static_cast<void>(renderer.desc(output.port));
 
     Profile profile;
@@ -107,6 +108,7 @@ void addRenderCommand(CLI::App& app, Run& run) {
                      "(.png, .hdr, .exr, .bin); may be given several times")
         ->allow_extra_args(false);
     command->add_option("--stats", arguments->stats, "Write times, memory and what was left out as JSON");
+    command->add_flag("--still", arguments->still, "The scene's time stands still at 0");
     command->add_flag("--keep-all", arguments->keepAll, "Leave nothing out");
     command->add_flag("--no-sharing", arguments->noSharing, "Give each resource memory of its own");
     command->add_flag("--check-finite", arguments->checkFinite,

@@ -5,6 +5,7 @@
 #include "graph/value_text.h"
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace kestrel {
 namespace {
@@ -39,6 +40,7 @@ public:
         sweep.timedFrames =
             whole(fields.optional("timed_frames"), "timed_frames", 1, maxSweepFrames, sweep.timedFrames);
         sweep.seed = static_cast<std::uint32_t>(whole(fields.optional("seed"), "seed", 0, 1 << 30, 0));
+        sweep.moving = flag(fields.optional("moving", Kind::Bool));
         sweep.rebuild = flag(fields.optional("rebuild", Kind::Bool));
         sweep.hdr = flag(fields.optional("hdr", Kind::Bool));
         readTimes(fields.optional("times", Kind::Object), sweep);
@@ -217,6 +219,7 @@ private:
         if (const auto hits = port(fields.required("hits", Kind::String), "hits")) rays.hits = *hits;
         if (const auto buffer = port(fields.required("rays", Kind::String), "rays")) rays.rays = *buffer;
         rays.settings = settings(fields.optional("set", Kind::Array));
+        rays.frames = whole(fields.optional("frames"), "frames", 1, maxSweepFrames, 1);
         fields.refuseOthers();
         sweep.rays = std::move(rays);
     }
@@ -262,8 +265,15 @@ private:
         }
         if (const Json* plot = fields.optional("plot", Kind::String))
             variant.plot = name(plot, "plot of a variant");
-        if (const Json* frames = fields.optional("frames"))
+        if (const Json* frames = fields.optional("frames")) {
             variant.frames = whole(frames, "frames", 1, maxSweepFrames, 1);
+            if (variant.ray)
+                note(frames->where,
+                     "how many frames a variant with 'hits' runs stands in 'rays': all trace the same");
+            else if (sweep.moving)
+                note(frames->where,
+                     "where scenes move, all variants run as many frames as the reference's time needs");
+        }
         fields.refuseOthers();
         sweep.variants.push_back(std::move(variant));
     }
@@ -380,8 +390,8 @@ private:
             std::vector<std::string> labels;
             for (const SweepAxisValue& value : axis->values) labels.push_back(value.label);
             if (std::ranges::find(labels, *label) == labels.end())
-                note(member.value.where, fmt::format("the axis '{}' has no value '{}'{}", axis->name, *label,
-                                                     didYouMean(*label, labels)));
+                note(member.value.where, fmt::format("the axis '{}' has no value '{}' (it has {})",
+                                                     axis->name, *label, fmt::join(labels, ", ")));
             exclusion[member.key] = *label;
         }
         variant.exclude.push_back(std::move(exclusion));
@@ -405,6 +415,9 @@ private:
 Sweep parseSweep(std::string_view text, const std::string& file) {
     std::vector<Problem> problems;
     Sweep sweep = SweepReader(problems).read(Json::parse(text, file), file);
+    std::ranges::stable_sort(problems, {}, [](const Problem& problem) {
+        return std::pair(problem.where.line, problem.where.column);
+    });
     if (!problems.empty()) throw InputError(std::move(problems));
     sweep.text = text;
     if (sweep.plotError.empty()) sweep.plotError = "flip";

@@ -42,6 +42,7 @@ struct SweepRays {
     std::string graph;
     PortRef rays, hits;
     std::vector<SweepSetting> settings;
+    int frames = 1; // the rays of the last of them count, also for variants
     Location where;
 };
 
@@ -89,6 +90,7 @@ struct Sweep {
     int repeats = 5;     // turns of each variant, round-robin
     int timedFrames = 1; // a turn
     std::uint32_t seed = 0;
+    bool moving = false;  // scenes move on from frame to frame; else their time stands still at 0
     bool rebuild = false; // everything is made anew in each timed frame, as in a scene that moves
     bool hdr = false;     // pictures hold linear light without upper limit: HDR-FLIP
     std::string plotTime = "total", plotError; // the axes that the page shows first

@@ -3,7 +3,8 @@
 namespace kestrel::page {
 
 // No text of the results is ever taken for HTML: elements are made one by one, with textContent.
-const std::string_view script = R"js('use strict';
+const std::string_view script = R"js((() => {
+'use strict';
 const R = JSON.parse(document.getElementById('results').textContent);
 const SVG = 'http://www.w3.org/2000/svg';
 const mistakes = [];
@@ -252,7 +253,7 @@ function placeTags(svg, points, x, y) {
   const shown = state.labels ? points : points.filter(p => p.best);
   for (const p of [...shown].sort((a, b) => (b.best ? 1 : 0) - (a.best ? 1 : 0))) {
     const text = p.row.variant, width = 5.9 * text.length, px = x(p.t), py = y(p.e);
-    for (const [dx, dy, anchor] of [[10, 4, 'start'], [8, -8, 'start'], [8, 16, 'start'], [-10, 4, 'end'], [-8, -8, 'end'], [-8, 16, 'end']]) {
+    for (const [dx, dy, anchor] of [[8, -8, 'start'], [8, 16, 'start'], [-8, 16, 'end'], [-8, -8, 'end'], [10, 4, 'start'], [-10, 4, 'end']]) {
       const u = anchor === 'start' ? px + dx : px + dx - width;
       const box = [u, py + dy - 10, u + width, py + dy + 3];
       if (!free(box)) continue;
@@ -475,6 +476,7 @@ if (new URLSearchParams(location.search).has('selftest')) {
   found.errors = mistakes;
   document.documentElement.dataset.selftest = JSON.stringify(found);
 }
+})();
 )js";
 
 } // namespace kestrel::page

@@ -41,7 +41,7 @@ SweepPoint pointOf(const Sweep& sweep, const SweepVariant& variant, const Choice
     point.ray = variant.ray;
     point.output = variant.output;
     point.settings = variant.settings;
-    point.frames = variant.frames.value_or(sweep.frames);
+    point.frames = variant.ray && sweep.rays ? sweep.rays->frames : variant.frames.value_or(sweep.frames);
     point.where = variant.where;
     for (size_t i = 0; i < choice.size(); ++i) {
         const SweepAxis& axis = variant.axes[i];
@@ -125,7 +125,7 @@ std::vector<SweepPoint> expandSweep(const Sweep& sweep) {
 
 std::vector<SweepUnit> sweepUnits(const Sweep& sweep, const std::vector<SweepPoint>& points) {
     std::vector<SweepUnit> units;
-    std::set<std::string> slugs;
+    std::set<std::string> slugs{"machines", "references"}; // they stand beside the units' folders
     for (size_t scene = 0; scene < sweep.scenes.size(); ++scene) {
         const size_t first = units.size();
         for (size_t i = 0; i < points.size(); ++i) {
@@ -183,10 +183,14 @@ std::filesystem::path sweepGraphFile(const Sweep& sweep, const std::string& grap
     const std::filesystem::path shipped = shareFolder() / "graphs";
     if (const auto file = pathInside(shipped, graph); std::filesystem::is_regular_file(file, ignored))
         return file;
+    std::vector<std::string> names;
+    for (const std::filesystem::path& place : {folder, shipped})
+        for (const auto& entry : std::filesystem::directory_iterator(place, ignored))
+            if (entry.path().extension() == ".json") names.push_back(entry.path().filename().string());
     throw InputError(
         fmt::format("there is no graph '{}' in the folder of the sweep file, nor among those that "
-                    "come with Kestrel",
-                    graph));
+                    "come with Kestrel{}",
+                    graph, didYouMean(graph, names)));
 }
 
 Graph sweepGraph(const Sweep& sweep, const std::string& graph, const std::vector<SweepSetting>& settings,

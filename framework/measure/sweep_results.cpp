@@ -179,6 +179,7 @@ RowJson documentJson(const Sweep& sweep, const SweepResults& results) {
             {"warm_up", sweep.warmUp},
             {"repeats", sweep.repeats},
             {"timed_frames", sweep.timedFrames},
+            {"moving", sweep.moving},
             {"rebuild", sweep.rebuild},
             {"hdr", sweep.hdr},
             {"plot", {{"time", sweep.plotTime}, {"error", sweep.plotError}}},
@@ -391,6 +392,7 @@ std::string renderCommand(const Sweep& sweep, const SweepScene& scene, const Swe
     words.insert(words.end(), {"--size", fmt::format("{}x{}", sweep.size.width, sweep.size.height),
                                "--frames", std::to_string(point.frames)});
     if (sweep.seed != 0) words.insert(words.end(), {"--seed", std::to_string(sweep.seed)});
+    if (!sweep.moving) words.push_back("--still");
     for (const SweepSetting& setting : point.settings) words.insert(words.end(), {"--set", setting.text});
     words.insert(words.end(), {"--output", fmt::format("{}={}.{}", point.output.text(), point.slug,
                                                        point.ray ? "bin" : "exr")});

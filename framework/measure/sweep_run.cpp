@@ -170,8 +170,21 @@ private:
         options.camera = camera;
         options.timing = true;
         options.finishFrames = true;
-        return std::make_unique<Renderer>(sweepGraph(sweep_, graph, settings, outputs, registry_, where),
-                                          registry_, loaded_, context_.capabilities(), options);
+        auto renderer =
+            std::make_unique<Renderer>(sweepGraph(sweep_, graph, settings, outputs, registry_, where),
+                                       registry_, loaded_, context_.capabilities(), options);
+        renderer->setPaused(!sweep_.moving);
+        return renderer;
+    }
+
+    // When the last frame of a moving picture is, as the renderer counts it.
+    [[nodiscard]] double timeOfPicture(double duration) const {
+        double time = 0;
+        for (int i = 1; i < sweep_.frames; ++i) {
+            time += 1.0 / 60;
+            if (time > duration) time = duration > 0 ? std::fmod(time, duration) : 0;
+        }
+        return time;
     }
 
     [[nodiscard]] std::unique_ptr<Renderer> open(const SweepPoint& point, const std::string& camera) const {
@@ -228,6 +241,8 @@ private:
         std::vector<PortRef> outputs{asked.output};
         if (asked.mask) outputs.push_back(*asked.mask);
         const auto renderer = open(asked.graph, asked.settings, outputs, asked.where, scene.camera);
+        renderer->setPaused(true);
+        if (sweep_.moving) renderer->setTime(timeOfPicture(renderer->facts().duration));
         for (int i = 0; i < asked.frames; ++i) static_cast<void>(renderer->frame());
         reference_ = renderer->read(asked.output);
         if (asked.mask) mask_ = convertChannels(renderer->read(*asked.mask), 1);
@@ -248,7 +263,7 @@ private:
         tell(scene.name + ": the reference's rays", false);
         const auto renderer =
             open(asked.graph, asked.settings, {asked.hits, asked.rays}, asked.where, scene.camera);
-        for (int i = 0; i < sweep_.frames; ++i) static_cast<void>(renderer->frame());
+        for (int i = 0; i < asked.frames; ++i) static_cast<void>(renderer->frame());
         const std::vector<std::byte> rays = renderer->readBytes(asked.rays);
         distances_ = hitDistances(renderer->readBytes(asked.hits));
         const SweepRayFigures figures = compareHits(rays, distances_, distances_);
@@ -334,6 +349,7 @@ private:
         Renderer& renderer = own ? *own : *candidate.renderer;
         // A renderer that was just made has everything to build in its first frame.
         const int warmUp = sweep_.warmUp + (own && sweep_.warmUp == 0 ? 1 : 0);
+        if (sweep_.moving) renderer.restart(); // every turn sees the same frames
         for (int i = 0; i < warmUp; ++i) nextFrame(renderer);
         std::vector<SweepFrame> frames;
         for (int i = 0; i < sweep_.timedFrames; ++i) {
