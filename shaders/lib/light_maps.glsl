@@ -2,10 +2,19 @@
 #include "lib/trips.glsl"
 #include "shared/light_map.h"
 
-// The lights of one kind: slots [FIRST, FIRST + SLOTS) of a block, of which `count` are in use. SLOTS is a constant, so that
-// a kind that the scene has none of leaves no code.
-#define FOR_LIGHTS(slot, FIRST, SLOTS, count)                                                                                \
-    for (uint slot = uint(FIRST); slot < uint(FIRST) + uint(SLOTS) && slot < uint(FIRST) + count; ++slot)
+// Does `BODY` for each light of one kind: `slot` runs over [FIRST, FIRST + SLOTS) of a block, of which `count` are in use.
+// SLOTS is a constant and not 0: leave the whole out with #if where it is, since a loop without trips still takes the time of
+// one on a driver that masks. A single light takes no loop, for the same reason.
+#define EACH_LIGHT(slot, FIRST, SLOTS, count, BODY)                                                                          \
+    if (SLOTS == 1) {                                                                                                        \
+        const uint slot = uint(FIRST);                                                                                       \
+        BODY                                                                                                                 \
+    } else {                                                                                                                 \
+        for (uint slot = uint(FIRST); slot < uint(FIRST) + uint(SLOTS) && slot < uint(FIRST) + count; ++slot) {              \
+            TRIP;                                                                                                            \
+            BODY                                                                                                             \
+        }                                                                                                                    \
+    }
 
 // Where something lies in a map.
 struct LightMapPlace {

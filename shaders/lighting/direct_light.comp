@@ -71,36 +71,33 @@ void main() {
     alpha = ggxAlpha(surface.x);
 #endif
 
+#if POINT_LIGHTS > 0
     TRIPS_BEGIN;
-    FOR_LIGHTS(slot, 0, POINT_LIGHTS, counts.points) {
-        TRIP;
-        addPunctual(slot);
-    }
+    EACH_LIGHT(slot, 0, POINT_LIGHTS, counts.points, addPunctual(slot);)
+#endif
     TRIPS_BEGIN;
     const uint spots = uint(POINT_LIGHTS);
-    FOR_LIGHTS(slot, spots, SPOT_LIGHTS, counts.spots) {
-        TRIP;
-        addPunctual(slot);
-    }
+#if SPOT_LIGHTS > 0
+    EACH_LIGHT(slot, spots, SPOT_LIGHTS, counts.spots, addPunctual(slot);)
+#endif
     TRIPS_BEGIN;
     const uint directionals = spots + uint(SPOT_LIGHTS);
-    FOR_LIGHTS(slot, directionals, DIRECTIONAL_LIGHTS, counts.directionals) {
-        TRIP;
-        addPunctual(slot);
-    }
+#if DIRECTIONAL_LIGHTS > 0
+    EACH_LIGHT(slot, directionals, DIRECTIONAL_LIGHTS, counts.directionals, addPunctual(slot);)
+#endif
 #ifdef OUT_RESULT
     TRIPS_BEGIN;
     const uint rectangles = directionals + uint(DIRECTIONAL_LIGHTS);
-    FOR_LIGHTS(slot, rectangles, RECTANGLE_LIGHTS, counts.rectangles) {
-        TRIP;
-        irradiance += rectangleLight(lights[slot], position, n) * visible(slot);
-    }
+#if RECTANGLE_LIGHTS > 0
+    EACH_LIGHT(slot, rectangles, RECTANGLE_LIGHTS, counts.rectangles,
+               irradiance += rectangleLight(lights[slot], position, n) * visible(slot);)
+#endif
     TRIPS_BEGIN;
     const uint spheres = rectangles + uint(RECTANGLE_LIGHTS);
-    FOR_LIGHTS(slot, spheres, SPHERE_LIGHTS, counts.spheres) {
-        TRIP;
-        irradiance += sphereLight(lights[slot], position, n) * visible(slot);
-    }
+#if SPHERE_LIGHTS > 0
+    EACH_LIGHT(slot, spheres, SPHERE_LIGHTS, counts.spheres,
+               irradiance += sphereLight(lights[slot], position, n) * visible(slot);)
+#endif
     imageStore(result, pixel, vec4(background ? vec3(0.0) : min(irradiance / pi, vec3(lightMaximum)), 1.0));
 #endif
     TRIPS_END;

@@ -28,30 +28,27 @@ vec3 M(punctual)(uint slot, Surface at) {
 
 vec3 M(irradiance)(Surface at) {
     vec3 sum = vec3(0.0);
-    FOR_LIGHTS(slot, 0, POINT_LIGHTS, M(counts).points) {
-        TRIP;
-        sum += M(punctual)(slot, at);
-    }
+#if POINT_LIGHTS > 0
+    EACH_LIGHT(slot, 0, POINT_LIGHTS, M(counts).points, sum += M(punctual)(slot, at);)
+#endif
     const uint spots = uint(POINT_LIGHTS);
-    FOR_LIGHTS(slot, spots, SPOT_LIGHTS, M(counts).spots) {
-        TRIP;
-        sum += M(punctual)(slot, at);
-    }
+#if SPOT_LIGHTS > 0
+    EACH_LIGHT(slot, spots, SPOT_LIGHTS, M(counts).spots, sum += M(punctual)(slot, at);)
+#endif
     const uint directionals = spots + uint(SPOT_LIGHTS);
-    FOR_LIGHTS(slot, directionals, DIRECTIONAL_LIGHTS, M(counts).directionals) {
-        TRIP;
-        sum += M(punctual)(slot, at);
-    }
+#if DIRECTIONAL_LIGHTS > 0
+    EACH_LIGHT(slot, directionals, DIRECTIONAL_LIGHTS, M(counts).directionals, sum += M(punctual)(slot, at);)
+#endif
     const uint rectangles = directionals + uint(DIRECTIONAL_LIGHTS);
-    FOR_LIGHTS(slot, rectangles, RECTANGLE_LIGHTS, M(counts).rectangles) {
-        TRIP;
-        sum += rectangleLight(M(lights)[slot], at.position, at.shadingNormal) * VISIBLE(slot, at);
-    }
+#if RECTANGLE_LIGHTS > 0
+    EACH_LIGHT(slot, rectangles, RECTANGLE_LIGHTS, M(counts).rectangles,
+               sum += rectangleLight(M(lights)[slot], at.position, at.shadingNormal) * VISIBLE(slot, at);)
+#endif
     const uint spheres = rectangles + uint(RECTANGLE_LIGHTS);
-    FOR_LIGHTS(slot, spheres, SPHERE_LIGHTS, M(counts).spheres) {
-        TRIP;
-        sum += sphereLight(M(lights)[slot], at.position, at.shadingNormal) * VISIBLE(slot, at);
-    }
+#if SPHERE_LIGHTS > 0
+    EACH_LIGHT(slot, spheres, SPHERE_LIGHTS, M(counts).spheres,
+               sum += sphereLight(M(lights)[slot], at.position, at.shadingNormal) * VISIBLE(slot, at);)
+#endif
     return sum;
 }
 #endif

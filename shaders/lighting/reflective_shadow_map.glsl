@@ -1,10 +1,10 @@
-// The module `radiance` by reflective shadow maps: one diffuse reflection of the light of each kind. Area lights
-// are seen from their middle: what that sees receives their whole light, as in DirectLight.
+// The module `radiance` by reflective shadow maps: one diffuse reflection of the light of each kind. Area lights are seen from
+// their middle: what that sees receives their whole light, as in DirectLight.
 //
-// A hit counts as the surface that a texel holds if it lies within a tolerance of that surface's plane: so many texels as `bias` (a curved
-// surface leaves its plane within one) and the error that the hit's tracer states. Distance from the plane, not along the
-// ray of light: within a texel the latter grows without bound as the light comes in flat. Light leaves to the lit side only,
-// so that a thin wall keeps it out.
+// A hit counts as the surface that a texel holds if it lies within a tolerance of that surface's plane: so many texels as
+// `bias` (a curved surface leaves its plane within one) and the error that the hit's tracer states. Distance from the plane,
+// not along the ray of light: within a texel the latter grows without bound as the light comes in flat. Light leaves to the
+// lit side only, so that a thin wall keeps it out.
 #include "lib/radiance.glsl"
 #if LIGHTS > 0
 #include "lib/light_maps.glsl"
@@ -17,8 +17,10 @@ layout(std140) uniform M(Maps) {
     LightRecord M(lights)[LIGHTS];
 };
 
-vec3 M(fromMap)(uint slot, Surface at, vec3 toward) {
+// `faces` are those of the light's kind: what a map with others would need is left out.
+vec3 M(fromMap)(uint slot, uint faces, Surface at, vec3 toward) {
     LightMap map = M(maps)[slot];
+    map.faces = faces;
     LightMapPlace place = lightMapPlace(map, at.position, float(RESOLUTION));
     ivec3 texel = ivec3(clamp(ivec2(floor(place.texel)), ivec2(0), ivec2(RESOLUTION - 1)), place.layer);
     vec4 plane = texelFetch(M(map_normal), texel, 0);
@@ -32,26 +34,24 @@ vec3 M(fromMap)(uint slot, Surface at, vec3 toward) {
 vec3 M(surface)(Surface at, vec3 toward) {
     vec3 sum = vec3(0.0);
 #if LIGHTS > 0
-    FOR_LIGHTS(slot, 0, POINT_LIGHTS, M(counts).points) {
-        TRIP;
-        sum += M(fromMap)(slot, at, toward);
-    }
-    FOR_LIGHTS(slot, POINT_LIGHTS, SPOT_LIGHTS, M(counts).spots) {
-        TRIP;
-        sum += M(fromMap)(slot, at, toward);
-    }
-    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS, DIRECTIONAL_LIGHTS, M(counts).directionals) {
-        TRIP;
-        sum += M(fromMap)(slot, at, toward);
-    }
-    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, M(counts).rectangles) {
-        TRIP;
-        sum += M(fromMap)(slot, at, toward);
-    }
-    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS + RECTANGLE_LIGHTS, SPHERE_LIGHTS, M(counts).spheres) {
-        TRIP;
-        sum += M(fromMap)(slot, at, toward);
-    }
+#if POINT_LIGHTS > 0
+    EACH_LIGHT(slot, 0, POINT_LIGHTS, M(counts).points, sum += M(fromMap)(slot, 6u, at, toward);)
+#endif
+#if SPOT_LIGHTS > 0
+    EACH_LIGHT(slot, POINT_LIGHTS, SPOT_LIGHTS, M(counts).spots, sum += M(fromMap)(slot, 1u, at, toward);)
+#endif
+#if DIRECTIONAL_LIGHTS > 0
+    EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS, DIRECTIONAL_LIGHTS, M(counts).directionals,
+               sum += M(fromMap)(slot, 0u, at, toward);)
+#endif
+#if RECTANGLE_LIGHTS > 0
+    EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, M(counts).rectangles,
+               sum += M(fromMap)(slot, 5u, at, toward);)
+#endif
+#if SPHERE_LIGHTS > 0
+    EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS + RECTANGLE_LIGHTS, SPHERE_LIGHTS, M(counts).spheres,
+               sum += M(fromMap)(slot, 6u, at, toward);)
+#endif
 #endif
     return sum;
 }

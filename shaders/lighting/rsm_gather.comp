@@ -103,31 +103,29 @@ void main() {
 #endif
 
     vec3 light = vec3(0.0);
+#if POINT_LIGHTS > 0
     TRIPS_BEGIN;
-    FOR_LIGHTS(slot, 0, POINT_LIGHTS, counts.points) {
-        TRIP;
-        light += gathered(slot, hashCombine(seed, slot), first);
-    }
+    EACH_LIGHT(slot, 0, POINT_LIGHTS, counts.points, light += gathered(slot, hashCombine(seed, slot), first);)
+#endif
+#if SPOT_LIGHTS > 0
     TRIPS_BEGIN;
-    FOR_LIGHTS(slot, POINT_LIGHTS, SPOT_LIGHTS, counts.spots) {
-        TRIP;
-        light += gathered(slot, hashCombine(seed, slot), first);
-    }
+    EACH_LIGHT(slot, POINT_LIGHTS, SPOT_LIGHTS, counts.spots, light += gathered(slot, hashCombine(seed, slot), first);)
+#endif
+#if DIRECTIONAL_LIGHTS > 0
     TRIPS_BEGIN;
-    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS, DIRECTIONAL_LIGHTS, counts.directionals) {
-        TRIP;
-        light += gathered(slot, hashCombine(seed, slot), first);
-    }
+    EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS, DIRECTIONAL_LIGHTS, counts.directionals,
+               light += gathered(slot, hashCombine(seed, slot), first);)
+#endif
+#if RECTANGLE_LIGHTS > 0
     TRIPS_BEGIN;
-    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, counts.rectangles) {
-        TRIP;
-        light += gathered(slot, hashCombine(seed, slot), first);
-    }
+    EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, counts.rectangles,
+               light += gathered(slot, hashCombine(seed, slot), first);)
+#endif
+#if SPHERE_LIGHTS > 0
     TRIPS_BEGIN;
-    FOR_LIGHTS(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS + RECTANGLE_LIGHTS, SPHERE_LIGHTS, counts.spheres) {
-        TRIP;
-        light += gathered(slot, hashCombine(seed, slot), first);
-    }
+    EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS + RECTANGLE_LIGHTS, SPHERE_LIGHTS, counts.spheres,
+               light += gathered(slot, hashCombine(seed, slot), first);)
+#endif
     TRIPS_END;
     imageStore(result, pixel, vec4(background ? vec3(0.0) : min(light, vec3(1e30)), 1.0));
 }
