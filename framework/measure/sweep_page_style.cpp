@@ -31,6 +31,7 @@ p { margin: 0 0 10px; max-width: 78ch; }
 code, pre { font: 12.5px/1.45 ui-monospace, "SF Mono", Menlo, Consolas, "DejaVu Sans Mono", monospace; }
 .note { border-left: 3px solid var(--accent); background: var(--card); padding: 10px 14px; margin: 14px 0;
   border-radius: 0 8px 8px 0; }
+.note p { max-width: none; }
 .note p:last-child { margin: 0; }
 .facts { display: flex; flex-wrap: wrap; gap: 4px 22px; margin: 12px 0; font-size: 13.5px; color: var(--soft); }
 .facts b { color: var(--ink); font-weight: 600; }

@@ -265,7 +265,7 @@ private:
             open(asked.graph, asked.settings, {asked.hits, asked.rays}, asked.where, scene.camera);
         for (int i = 0; i < asked.frames; ++i) static_cast<void>(renderer->frame());
         const std::vector<std::byte> rays = renderer->readBytes(asked.rays);
-        distances_ = hitDistances(renderer->readBytes(asked.hits));
+        distances_ = hitDistances(renderer->readBytes(asked.hits), rays);
         const SweepRayFigures figures = compareHits(rays, distances_, distances_);
         truth_.rays = figures.rays;
         truth_.hitShare = figures.hitShare;
@@ -324,7 +324,7 @@ private:
             throw InputError(point.where,
                              "traces other rays than the reference: graph, settings or frames that make "
                              "the rays differ");
-        picture.rays = compareHits(rays, hitDistances(renderer.readBytes(point.output)), distances_);
+        picture.rays = compareHits(rays, hitDistances(renderer.readBytes(point.output), rays), distances_);
     }
 
     void compareImage(Renderer& renderer, const SweepUnit& unit, const SweepPoint& point,
@@ -386,7 +386,13 @@ private:
 
 } // namespace
 
-std::vector<float> hitDistances(std::span<const std::byte> hits) {
+std::vector<float> hitDistances(std::span<const std::byte> hits, std::span<const std::byte> rays) {
+    const size_t count = rays.size() / sizeof(shared::RayRecord);
+    if (hits.size() == count * sizeof(float)) { // distances alone
+        std::vector<float> distances(count);
+        std::memcpy(distances.data(), hits.data(), hits.size());
+        return distances;
+    }
     std::vector<float> distances(hits.size() / sizeof(shared::HitRecord));
     for (size_t i = 0; i < distances.size(); ++i) {
         shared::HitRecord record;

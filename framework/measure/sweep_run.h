@@ -25,9 +25,9 @@ void runSweep(const Sweep& sweep, const std::vector<SweepPoint>& points, const s
               const Registry& registry, gl::Context& context, const SweepMachine& machine,
               const SweepFolder& folder, const SweepOptions& options);
 
-// The distance of each record of a buffer of hits (shared/ray.h, HitRecord): infinite where nothing was hit,
-// 0 for the hits of any-hit queries.
-std::vector<float> hitDistances(std::span<const std::byte> hits);
+// The distance of each hit of `rays` in a buffer of records (shared/ray.h, HitRecord) or of distances alone:
+// infinite where nothing was hit, 0 for the hits of any-hit queries.
+std::vector<float> hitDistances(std::span<const std::byte> hits, std::span<const std::byte> rays);
 
 // How hits agree with the reference's on the same rays (shared/ray.h, RayRecord); rays that do not exist do
 // not count. Throws InputError if the counts differ.
