@@ -40,7 +40,7 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
     if (query == Query::Closest) step.defines.emplace("CLOSEST", "1");
     // Whole texels are read four times as fast as the members of a record, where the buffer allows it.
     const bool texels =
-        rays.format == Format::RGBA32F &&
+        rays.format == Format::RGBA32UI &&
         rays.bytes / 16 <= static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
     if (!texels) step.defines.emplace("RAYS_STORAGE", "1");
     step.uses.push_back({.port = "rays", .access = texels ? Access::Image : Access::Storage});

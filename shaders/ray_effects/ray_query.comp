@@ -11,8 +11,8 @@ layout(std430) readonly buffer Rays { vec4 rays[]; };
 #define RAY_TEXEL(index) rays[index]
 #define RAY_TEXELS rays.length()
 #else
-layout(rgba32f) readonly uniform imageBuffer rays;
-#define RAY_TEXEL(index) imageLoad(rays, index)
+layout(rgba32ui) readonly uniform uimageBuffer rays; // bits: a record holds flags, and may hold infinity
+#define RAY_TEXEL(index) uintBitsToFloat(imageLoad(rays, index))
 #define RAY_TEXELS imageSize(rays)
 #endif
 #ifdef HITS
