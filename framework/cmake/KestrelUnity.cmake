@@ -1,5 +1,5 @@
 # Unity builds: the sources of a folder are compiled in groups of up to `size`, which parses the headers once a group and
-# makes building from nothing several times faster. Off (-DKESTREL_UNITY=OFF), editing one file compiles one file.
+# more than halves the time of building from nothing. Off (-DKESTREL_UNITY=OFF), editing one file compiles one file.
 option(KESTREL_UNITY "Compile sources in groups: faster from nothing, slower after an edit" OFF)
 
 # kestrel_unity(TARGET): groups by folder, so that a new file regroups its own folder alone.

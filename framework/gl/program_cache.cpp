@@ -1,6 +1,7 @@
 #include "gl/program_cache.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "core/hash.h"
 #include "core/log.h"
 #include "gl/loader.h"
 #include "gl/program.h"
@@ -13,13 +14,10 @@
 namespace kestrel::gl {
 namespace {
 
-// FNV-1a, 64 bits.
-std::uint64_t hashOf(std::string_view text, std::uint64_t hash = 0xcbf29ce484222325U) {
-    for (const char character : text) {
-        hash ^= static_cast<unsigned char>(character);
-        hash *= 0x100000001b3U;
-    }
-    return hash;
+std::uint64_t hashOf(std::string_view text, std::uint64_t seed = Fnv1a::start) {
+    Fnv1a hash(seed);
+    hash.add(text);
+    return hash.value();
 }
 
 // What precedes the binary in a file. The key is compared in full hashes of two seeds, the binary by its own.

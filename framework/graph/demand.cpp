@@ -88,14 +88,23 @@ void findPossibleCauses(const Network& network, Node& node) {
     for (const Module& module : declaration.modules) readsOfModule(node, module, gather(node.modulePossible));
 }
 
+// Why a pass does not make what it was to make; empty if it does not say.
+std::string whyNotMade(const Node& producer) {
+    if (!producer.impossible.empty()) return producer.impossible;
+    return producer.full.problems.empty() ? std::string() : producer.full.problems.front().message;
+}
+
 // Why a pass cannot run: a required input whose producer does not make it.
 std::string whyImpossible(const Network& network, const Node& node) {
     for (const PortInfo& port : node.type->ports) {
         if (port.direction != PortDirection::Input || port.optional || node.inputs.connected(port.name))
             continue;
         const auto feed = node.feeds.find(port.name);
-        return fmt::format("its input '{}' needs '{}', which is not made here", port.name,
-                           feed == node.feeds.end() ? "?" : network.text(feed->second));
+        if (feed == node.feeds.end())
+            return fmt::format("its input '{}' needs '?', which is not made here", port.name);
+        const std::string reason = whyNotMade(network.at(feed->second.node));
+        return fmt::format("its input '{}' needs '{}', which is not made here{}{}", port.name,
+                           network.text(feed->second), reason.empty() ? "" : ": ", reason);
     }
     return {};
 }

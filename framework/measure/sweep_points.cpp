@@ -1,5 +1,6 @@
 // What a sweep file unfolds to: points, units, shards; and whether the graphs bear it.
 #include "core/files.h"
+#include "core/hash.h"
 #include "measure/sweep_file.h"
 #include <algorithm>
 #include <charconv>
@@ -23,10 +24,10 @@ bool excluded(const SweepVariant& variant, const Choice& choice) {
 
 std::string withLabels(std::string text, const SweepVariant& variant, const Choice& choice) {
     for (size_t i = 0; i < variant.axes.size(); ++i) {
-        const std::string placeholder = "{" + variant.axes[i].name + "}";
-        for (size_t at = text.find(placeholder); at != std::string::npos;
-             at = text.find(placeholder, at + choice[i]->label.size()))
-            text.replace(at, placeholder.size(), choice[i]->label);
+        const std::string mark = "{" + variant.axes[i].name + "}";
+        for (size_t at = text.find(mark); at != std::string::npos;
+             at = text.find(mark, at + choice[i]->label.size()))
+            text.replace(at, mark.size(), choice[i]->label);
     }
     return text;
 }
@@ -67,19 +68,6 @@ bool addPoints(const Sweep& sweep, const SweepVariant& variant, std::vector<Swee
         if (axis == 0) return true;
     }
 }
-
-class Fnv { // Fowler, Noll, Vo: FNV-1a of 64 bits
-public:
-    void add(std::string_view text) {
-        for (const char c : text) step(static_cast<unsigned char>(c));
-        step(0);
-    }
-    [[nodiscard]] std::string text() const { return fmt::format("{:016x}", hash_); }
-
-private:
-    void step(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001b3ULL; }
-    std::uint64_t hash_ = 0xcbf29ce484222325ULL;
-};
 
 } // namespace
 
@@ -255,18 +243,19 @@ void checkSweep(const Sweep& sweep, const std::vector<SweepPoint>& points, const
 }
 
 std::string sweepHash(const Sweep& sweep) {
-    Fnv hash;
-    hash.add(sweep.text);
-    hash.add(fmt::format("{}x{} {} {}", sweep.size.width, sweep.size.height, sweep.frames, sweep.repeats));
+    Fnv1a hash;
+    const auto add = [&](const std::string& text) { hash.add(text + '\0'); };
+    add(sweep.text);
+    add(fmt::format("{}x{} {} {}", sweep.size.width, sweep.size.height, sweep.frames, sweep.repeats));
     std::set<std::string> graphs;
     if (sweep.reference) graphs.insert(sweep.reference->graph);
     if (sweep.rays) graphs.insert(sweep.rays->graph);
     for (const SweepVariant& variant : sweep.variants) graphs.insert(variant.graph);
     for (const std::string& graph : graphs) {
-        hash.add(graph);
-        hash.add(readText(sweepGraphFile(sweep, graph)));
+        add(graph);
+        add(readText(sweepGraphFile(sweep, graph)));
     }
-    return hash.text();
+    return fmt::format("{:016x}", hash.value());
 }
 
 } // namespace kestrel

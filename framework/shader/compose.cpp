@@ -1,4 +1,5 @@
 #include "shader/compose.h"
+#include "core/hash.h"
 #include "shader/names.h"
 #include "shader/stage_composer.h"
 #include <algorithm>
@@ -54,24 +55,23 @@ void checkDefines(const Defines& defines, const std::string& program, std::vecto
     }
 }
 
-// FNV-1a, 64 bits (Fowler, Noll, Vo), then the finalizer of SplitMix64: FNV's low bits mix poorly.
+// FNV-1a, then the finalizer of SplitMix64: FNV's low bits mix poorly.
 class TextHash {
 public:
     void add(std::string_view text) {
-        for (const char c : text) addByte(static_cast<unsigned char>(c));
-        for (std::uint64_t size = text.size(), i = 0; i < 8; ++i)
-            addByte(static_cast<unsigned char>(size >> (8 * i)));
+        const std::uint64_t size = text.size();
+        hash_.add(text);
+        hash_.add(std::as_bytes(std::span(&size, 1)));
     }
     [[nodiscard]] std::uint64_t value() const {
-        std::uint64_t h = state_;
+        std::uint64_t h = hash_.value();
         h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
         h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
         return h ^ (h >> 31);
     }
 
 private:
-    void addByte(unsigned char byte) { state_ = (state_ ^ byte) * 0x100000001b3u; }
-    std::uint64_t state_ = 0xcbf29ce484222325u;
+    Fnv1a hash_;
 };
 
 std::string joined(const std::vector<StageFile>& stages) {

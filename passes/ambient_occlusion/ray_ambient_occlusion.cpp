@@ -1,18 +1,9 @@
 #include "ray_ambient_occlusion.h"
-#include "draw/material_defines.h"
+#include "draw/ray_steps.h"
 #include "execute/commands.h"
-#include <algorithm>
-#include <charconv>
 #include <fmt/format.h>
 
 namespace kestrel {
-namespace {
-
-// A step traces at most this many rays a pixel: the rays' loop around a tracer's own loop must stay below the
-// trips after which llvmpipe silently stops a loop nest (65,535).
-constexpr int raysPerStep = 16;
-
-} // namespace
 
 PassType RayAmbientOcclusion::type() {
     return Describe<RayAmbientOcclusion>("RayAmbientOcclusion",
@@ -37,18 +28,17 @@ PassType RayAmbientOcclusion::type() {
 Declaration RayAmbientOcclusion::declare(const World& world, const Inputs& inputs,
                                          const Demand& demand) const {
     Declaration declaration;
-    const Extent extent = inputs.connected("depth") ? inputs["depth"].desc.extent : Extent{};
-    const View view = inputs.connected("depth") ? inputs["depth"].desc.view : View{};
-    if (inputs["normal"].desc.extent != extent)
+    const Desc& depth = inputs["depth"].desc;
+    if (inputs["normal"].desc.extent != depth.extent)
         declaration.problems.push_back(
-            {"normal", fmt::format("is {} but depth is {}", describe(inputs["normal"].desc),
-                                   describe(inputs["depth"].desc))});
+            {"normal",
+             fmt::format("is {} but depth is {}", describe(inputs["normal"].desc), describe(depth))});
     const bool snaps = snap && (inputs["tracer"].desc.gives & (gives::Snaps | gives::AlwaysSnaps)) != 0;
     const bool background = inputs["depth"].constant == glm::vec4(0);
     const bool weighted = demand.reads("weight");
 
-    Output visibility{.port = "visibility", .desc = Desc::texture2D(Format::R32F, extent, view)};
-    Output weight{.port = "weight", .desc = Desc::texture2D(Format::R32F, extent, view)};
+    Output visibility{.port = "visibility", .desc = Desc::texture2D(Format::R32F, depth.extent, depth.view)};
+    Output weight{.port = "weight", .desc = Desc::texture2D(Format::R32F, depth.extent, depth.view)};
     if (background) visibility.constant = glm::vec4(1);
     if (background || !snaps) weight.constant = glm::vec4(1);
     declaration.outputs.push_back(visibility);
@@ -60,33 +50,23 @@ Declaration RayAmbientOcclusion::declare(const World& world, const Inputs& input
     if (weighted && !snaps)
         declaration.leftOut.push_back({"weight", "the tracer traces the directions that were asked for"});
 
-    const int count = (rays + raysPerStep - 1) / raysPerStep;
-    for (int i = 0; i < count; ++i) {
-        Step step{.name = fmt::format("trace{}", i),
-                  .shaders = {"ambient_occlusion/ray_ambient_occlusion.comp"},
-                  .defines = {{"RAYS", std::to_string(std::min(raysPerStep, rays - i * raysPerStep))},
-                              {"FIRST_RAY", std::to_string(i * raysPerStep)},
-                              {"TOTAL_RAYS", std::to_string(rays)}},
-                  .uses = {{.port = "depth", .access = Access::Fetch},
-                           {.port = "normal", .access = Access::Image},
-                           {.port = "visibility", .access = Access::Image, .write = true}},
-                  .modules = {{"tracer", takes::AnyHit | (snap ? takes::BearsSnap : 0)}},
-                  .group = "tracing"};
-        step.defines.merge(materialDefines(world.facts));
-        if (i > 0) step.defines.emplace("CONTINUES", "1");
-        if (i + 1 == count) step.defines.emplace("ENDS", "1");
-        if (snaps) {
-            step.defines.emplace("SNAPS", "1");
-            if (estimator == Estimator::CosineRatio) step.defines.emplace("COSINE_RATIO", "1");
-            // Between steps the sum of weights must live somewhere, also if nobody else reads it.
-            if (weighted || count > 1) {
-                step.defines.emplace("WEIGHT", "1");
-                step.uses.push_back({.port = "weight", .access = Access::Image, .write = true});
-                if (!weighted && i == 0) declaration.outputs.push_back(weight);
-            }
+    Step step{.name = {},
+              .shaders = {"ambient_occlusion/ray_ambient_occlusion.comp"},
+              .defines = {},
+              .uses = {{.port = "depth", .access = Access::Fetch},
+                       {.port = "normal", .access = Access::Image},
+                       {.port = "visibility", .access = Access::Image, .write = true}},
+              .modules = {{"tracer", takes::AnyHit | (snap ? takes::BearsSnap : 0)}}};
+    if (snaps) {
+        if (estimator == Estimator::CosineRatio) step.defines.emplace("COSINE_RATIO", "1");
+        // Between steps the sum of weights must live somewhere, also if nobody else reads it.
+        if (weighted || rays > maxRaysPerStep) {
+            step.defines.emplace("WEIGHT", "1");
+            step.uses.push_back({.port = "weight", .access = Access::Image, .write = true});
+            if (!weighted) declaration.outputs.push_back(weight);
         }
-        declaration.steps.push_back(std::move(step));
     }
+    declaration.steps = raySteps(std::move(step), rays, world.facts);
     declaration.depends = Causes::Frame;
     return declaration;
 }

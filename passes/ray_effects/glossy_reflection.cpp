@@ -1,16 +1,9 @@
 #include "glossy_reflection.h"
-#include "draw/material_defines.h"
+#include "draw/ray_steps.h"
 #include "execute/commands.h"
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace kestrel {
-namespace {
-
-// See IndirectDiffuse: a loop nest has a limit.
-constexpr int glossyRaysPerStep = 16;
-
-} // namespace
 
 PassType GlossyReflection::type() {
     return Describe<GlossyReflection>("GlossyReflection",
@@ -50,29 +43,18 @@ Declaration GlossyReflection::declare(const World& world, const Inputs& inputs, 
     const bool surfaces = (inputs["radiance"].desc.gives & needs::Surface) != 0;
     if (!surfaces)
         declaration.leftOut.push_back({"normals and materials of hits", "the radiance needs only positions"});
-    const int count = (rays + glossyRaysPerStep - 1) / glossyRaysPerStep;
-    for (int i = 0; i < count; ++i) {
-        const int first = i * glossyRaysPerStep;
-        Step step{
-            .name = fmt::format("trace{}", i),
-            .shaders = {"ray_effects/glossy_reflection.comp"},
-            .defines = {{"RAYS", std::to_string(std::min(glossyRaysPerStep, rays - first))},
-                        {"FIRST_RAY", std::to_string(first)},
-                        {"TOTAL_RAYS", std::to_string(rays)}},
-            .uses = {{.port = "depth", .access = Access::Fetch},
-                     {.port = "normal", .access = Access::Image},
-                     // Read once a pixel: image units are kept for what a tracer reads at random.
-                     {.port = "albedo", .access = Access::Fetch},
-                     {.port = "material", .access = Access::Fetch},
-                     {.port = "result", .access = Access::Image, .write = true}},
-            .modules = {{"tracer", takes::ClosestHit | (surfaces ? takes::Surface : 0)}, {"radiance", 0}},
-            .group = "tracing"};
-        step.defines.merge(materialDefines(world.facts));
-        if (surfaces) step.defines.emplace("NEEDS_SURFACE", "1");
-        if (i > 0) step.defines.emplace("CONTINUES", "1");
-        if (i + 1 == count) step.defines.emplace("ENDS", "1");
-        declaration.steps.push_back(std::move(step));
-    }
+    Step step{.name = {},
+              .shaders = {"ray_effects/glossy_reflection.comp"},
+              .defines = {},
+              .uses = {{.port = "depth", .access = Access::Fetch},
+                       {.port = "normal", .access = Access::Image},
+                       // Read once a pixel: image units are kept for what a tracer reads at random.
+                       {.port = "albedo", .access = Access::Fetch},
+                       {.port = "material", .access = Access::Fetch},
+                       {.port = "result", .access = Access::Image, .write = true}},
+              .modules = {{"tracer", takes::ClosestHit | (surfaces ? takes::Surface : 0)}, {"radiance", 0}}};
+    if (surfaces) step.defines.emplace("NEEDS_SURFACE", "1");
+    declaration.steps = raySteps(std::move(step), rays, world.facts);
     declaration.depends = Causes::Frame;
     return declaration;
 }

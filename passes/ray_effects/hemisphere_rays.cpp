@@ -23,7 +23,8 @@ Declaration HemisphereRays::declare(const World&, const Inputs& inputs, const De
             {"normal", fmt::format("is {} but depth is {}", describe(inputs["normal"].desc),
                                    describe(inputs["depth"].desc))});
     const std::uint64_t pixels = std::uint64_t{extent.width} * extent.height;
-    declaration.outputs.push_back({.port = "rays", .desc = Desc::buffer(pixels * sizeof(shared::RayRecord), Format::RGBA32UI)});
+    declaration.outputs.push_back(
+        {.port = "rays", .desc = Desc::buffer(pixels * sizeof(shared::RayRecord), Format::RGBA32UI)});
     declaration.steps.push_back({.name = "generate",
                                  .shaders = {"ray_effects/hemisphere_rays.comp"},
                                  .defines = {},

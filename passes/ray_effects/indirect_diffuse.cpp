@@ -1,17 +1,9 @@
 #include "indirect_diffuse.h"
-#include "draw/material_defines.h"
+#include "draw/ray_steps.h"
 #include "execute/commands.h"
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace kestrel {
-namespace {
-
-// A step traces at most this many rays a pixel: the rays' loop around a tracer's own loop must stay below the
-// trips after which llvmpipe silently stops a loop nest (65,535).
-constexpr int indirectRaysPerStep = 16;
-
-} // namespace
 
 PassType IndirectDiffuse::type() {
     return Describe<IndirectDiffuse>("IndirectDiffuse",
@@ -62,37 +54,26 @@ Declaration IndirectDiffuse::declare(const World& world, const Inputs& inputs, c
     const bool surfaces = (inputs["radiance"].desc.gives & needs::Surface) != 0;
     if (!surfaces)
         declaration.leftOut.push_back({"normals and materials of hits", "the radiance needs only positions"});
-    const int count = (rays + indirectRaysPerStep - 1) / indirectRaysPerStep;
-    for (int i = 0; i < count; ++i) {
-        const int first = i * indirectRaysPerStep;
-        Step step{.name = fmt::format("trace{}", i),
-                  .shaders = {"ray_effects/indirect_diffuse.comp"},
-                  .defines = {{"RAYS", std::to_string(std::min(indirectRaysPerStep, rays - first))},
-                              {"FIRST_RAY", std::to_string(first)},
-                              {"TOTAL_RAYS", std::to_string(rays)}},
-                  .uses = {{.port = "depth", .access = Access::Fetch},
-                           {.port = "normal", .access = Access::Image},
-                           {.port = "result", .access = Access::Image, .write = true}},
-                  .modules = {{"tracer", (surfaces ? takes::Surface | takes::ClosestHit : takes::ClosestHit) |
-                                             (snap ? takes::BearsSnap : 0)},
-                              {"radiance", 0}},
-                  .group = "tracing"};
-        step.defines.merge(materialDefines(world.facts));
-        if (surfaces) step.defines.emplace("NEEDS_SURFACE", "1");
-        if (i > 0) step.defines.emplace("CONTINUES", "1");
-        if (i + 1 == count) step.defines.emplace("ENDS", "1");
-        if (snaps) {
-            step.defines.emplace("SNAPS", "1");
-            if (estimator == Estimator::CosineRatio) step.defines.emplace("COSINE_RATIO", "1");
-            // Between steps the sum of weights must live somewhere, also if nobody else reads it.
-            if (weighted || count > 1) {
-                step.defines.emplace("WEIGHT", "1");
-                step.uses.push_back({.port = "weight", .access = Access::Image, .write = true});
-                if (!weighted && i == 0) declaration.outputs.push_back(weight);
-            }
+    Step step{.name = {},
+              .shaders = {"ray_effects/indirect_diffuse.comp"},
+              .defines = {},
+              .uses = {{.port = "depth", .access = Access::Fetch},
+                       {.port = "normal", .access = Access::Image},
+                       {.port = "result", .access = Access::Image, .write = true}},
+              .modules = {{"tracer", (surfaces ? takes::Surface | takes::ClosestHit : takes::ClosestHit) |
+                                         (snap ? takes::BearsSnap : 0)},
+                          {"radiance", 0}}};
+    if (surfaces) step.defines.emplace("NEEDS_SURFACE", "1");
+    if (snaps) {
+        if (estimator == Estimator::CosineRatio) step.defines.emplace("COSINE_RATIO", "1");
+        // Between steps the sum of weights must live somewhere, also if nobody else reads it.
+        if (weighted || rays > maxRaysPerStep) {
+            step.defines.emplace("WEIGHT", "1");
+            step.uses.push_back({.port = "weight", .access = Access::Image, .write = true});
+            if (!weighted) declaration.outputs.push_back(weight);
         }
-        declaration.steps.push_back(std::move(step));
     }
+    declaration.steps = raySteps(std::move(step), rays, world.facts);
     declaration.depends = Causes::Frame;
     return declaration;
 }

@@ -17,7 +17,7 @@ PassType RayQuery::type() {
         .input("tracer", PortKind::Tracer, "Who answers")
         .output("hits", PortKind::Buffer, "One hit record a ray (shared/ray.h)")
         .output("distance", PortKind::Buffer,
-                "One float a ray, as HitRecord::t: a quarter of the time where nothing more is asked for")
+                "One float a ray, as HitRecord::t: for those who need no more, in half the time")
         .choice("query", &RayQuery::query, {"any", "closest"}, "Is anything there, or what is nearest?")
         .flag("snap", &RayQuery::snap, "Bears that a tracer replaces directions by nearby ones");
 }
@@ -38,7 +38,7 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
               .group = "tracing"};
     step.defines.merge(materialDefines(world.facts));
     if (query == Query::Closest) step.defines.emplace("CLOSEST", "1");
-    // Whole texels are read four times as fast as the members of a record, where the buffer allows it.
+    // Whole texels, where the buffer allows it: a CPU driver fetches the members of a record one by one.
     const bool texels =
         rays.format == Format::RGBA32UI &&
         rays.bytes / 16 <= static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);

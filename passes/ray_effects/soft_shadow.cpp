@@ -1,16 +1,14 @@
 #include "soft_shadow.h"
-#include "draw/material_defines.h"
+#include "draw/ray_steps.h"
 #include "execute/commands.h"
 #include "shared/emitter.h"
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <limits>
 
 namespace kestrel {
 namespace {
-
-// See IndirectDiffuse: a loop nest has a limit.
-constexpr int shadowRaysPerStep = 16;
 
 // How many emissive triangles there are is known only once there are triangles; more make the buffer grow.
 constexpr std::uint64_t firstEmissiveTriangles = 1024;
@@ -116,33 +114,24 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
                                  .group = "generation"});
     // A proxy's hit may be the light's own surface, which only the distance tells.
     const bool approximate = (inputs["tracer"].desc.gives & gives::Approximate) != 0;
-    const int count = (rays + shadowRaysPerStep - 1) / shadowRaysPerStep;
-    for (int i = 0; i < count; ++i) {
-        const int first = i * shadowRaysPerStep;
-        Step step{.name = fmt::format("trace{}", i),
-                  .shaders = {"ray_effects/soft_shadow.comp"},
-                  .defines = {{"RAYS", std::to_string(std::min(shadowRaysPerStep, rays - first))},
-                              {"FIRST_RAY", std::to_string(first)},
-                              {"TOTAL_RAYS", std::to_string(rays)}},
-                  .uses = {{.port = "depth", .access = Access::Fetch},
-                           {.port = "normal", .access = Access::Fetch},
-                           {.port = "emitters", .access = Access::Image},
-                           {.port = "result", .access = Access::Image, .write = true}},
-                  .modules = {{"tracer", (approximate ? takes::ClosestHit : takes::AnyHit) |
-                                             (snap ? takes::BearsSnap : 0)}},
-                  .group = "tracing"};
-        step.defines.merge(materialDefines(world.facts));
-        if (meshes || rectangles) step.defines.emplace("FLAT_EMITTERS", "1");
-        if (spheres) step.defines.emplace("SPHERE_EMITTERS", "1");
-        if (approximate) step.defines.emplace("APPROXIMATE", "1");
-        if (tellsVisibility && i + 1 == count) {
-            step.defines.emplace("VISIBILITY", "1");
-            step.uses.push_back({.port = "visibility", .access = Access::Image, .write = true});
-        }
-        if (i > 0) step.defines.emplace("CONTINUES", "1");
-        if (i + 1 == count) step.defines.emplace("ENDS", "1");
-        declaration.steps.push_back(std::move(step));
+    Step step{.name = {},
+              .shaders = {"ray_effects/soft_shadow.comp"},
+              .defines = {},
+              .uses = {{.port = "depth", .access = Access::Fetch},
+                       {.port = "normal", .access = Access::Fetch},
+                       {.port = "emitters", .access = Access::Image},
+                       {.port = "result", .access = Access::Image, .write = true}},
+              .modules = {{"tracer", (approximate ? takes::ClosestHit : takes::AnyHit) |
+                                         (snap ? takes::BearsSnap : 0)}}};
+    if (meshes || rectangles) step.defines.emplace("FLAT_EMITTERS", "1");
+    if (spheres) step.defines.emplace("SPHERE_EMITTERS", "1");
+    if (approximate) step.defines.emplace("APPROXIMATE", "1");
+    std::vector<Step> steps = raySteps(std::move(step), rays, world.facts);
+    if (tellsVisibility) { // of the sums of all steps
+        steps.back().defines.emplace("VISIBILITY", "1");
+        steps.back().uses.push_back({.port = "visibility", .access = Access::Image, .write = true});
     }
+    std::move(steps.begin(), steps.end(), std::back_inserter(declaration.steps));
     declaration.depends = Causes::Frame | Causes::Geometry | Causes::Transforms | Causes::Materials |
                           Causes::Lights | Causes::Properties;
     return declaration;

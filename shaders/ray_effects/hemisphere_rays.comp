@@ -9,7 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 uniform sampler2D depth;
 layout(rgba16f) uniform readonly image2D normal;
-layout(std430) writeonly buffer Rays { vec4 rays[]; }; // RayRecord by texels: its members one by one cost twice the time
+layout(std430) writeonly buffer Rays { vec4 rays[]; }; // RayRecord, texel by texel
 layout(std140) uniform DepthView { ViewData depthView; };
 uniform float maximumDistance; // 0: unbounded
 

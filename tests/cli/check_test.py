@@ -61,6 +61,13 @@ def test_check_tells_every_mistake_with_its_place():
         assert "bad.json:2:" in refused("check", file, *BLOB)[0]
 
 
+def test_check_tells_the_first_cause_of_what_cannot_be_made():
+    too_much = ["--set", "bom.resolution=256", "--set", "roma.angular=16"]
+    line = refused("check", RAY_AO, *BLOB, "--minimum", *too_much)[0]
+    assert "'mean.result' cannot be made" in line
+    assert "need 536870912 bytes in one storage block; the limit is 134217728" in line
+
+
 def test_dot_draws_what_is_left_out_faded():
     out = done("dot", RAY_AO, *BLOB).out
     assert out.startswith("digraph")

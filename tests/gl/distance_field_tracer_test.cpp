@@ -316,7 +316,7 @@ TEST_F(DistanceFields, ScaleDoesNotMatter) {
 }
 
 TEST_F(DistanceFields, AnEmptyMapLeavesTheFieldOut) {
-    TestRays::rays = {rayRecord({0, 0, 0}, {0, 0, 1})};
+    RaySource::rays = {rayRecord({0, 0, 0}, {0, 0, 1})};
     Renderer made =
         traced(trianglesScene({}), {"query.rays=own.rays", "query.tracer=field.tracer"}, {{"query", "hits"}});
     std::string all;

@@ -7,7 +7,7 @@
 namespace kestrel::test {
 namespace {
 
-// Asks a tracer for the surfaces at the hits of TestRays: normal and t.
+// Asks a tracer for the surfaces at the hits of RaySource: normal and t.
 class SurfaceQuery final : public Pass {
 public:
     static PassType type() {
@@ -203,11 +203,11 @@ TEST_F(NearField, ANearHalfThatAlwaysSnapsIsRefused) {
     registry.add(AlwaysSnapping::type());
     Graph graph = parseGraph(
         R"({"kestrel": 1, "passes": {"snapping": {"type": "AlwaysSnapping"}, "bvh": {"type": "Bvh"},
-        "hybrid": {"type": "NearFarTracer"}, "own": {"type": "TestRays"}, "query": {"type": "RayQuery", "properties": {"snap": true}}},
+        "hybrid": {"type": "NearFarTracer"}, "own": {"type": "RaySource"}, "query": {"type": "RayQuery", "properties": {"snap": true}}},
         "edges": [["snapping.tracer", "hybrid.near"], ["bvh.tracer", "hybrid.far"], ["own.rays", "query.rays"],
             ["hybrid.tracer", "query.tracer"]], "outputs": ["query.hits"]})",
         "test.json");
-    TestRays::rays = {rayRecord({0, 0, 0}, {0, 0, 1})};
+    RaySource::rays = {rayRecord({0, 0, 0}, {0, 0, 1})};
     try {
         const Renderer made(graph, registry, trianglesScene(square()), context().capabilities());
         FAIL() << "a tracer that always snaps cannot be the near half";
@@ -277,7 +277,7 @@ TEST_F(NearField, AWallOnScreenHidesHalfOfTheSky) {
     }
     open /= static_cast<double>(rays.size());
     EXPECT_NEAR(open, 0.5, 0.04); // the wall ends
-    TestRays::rays = rays;
+    RaySource::rays = rays;
     for (const char* stride : {"screen.stride=1", "screen.stride=4"}) {
         Renderer made =
             traced(scene, {"query.rays=own.rays", "query.tracer=screen.tracer", "screen.steps=512", stride},
@@ -376,10 +376,10 @@ TEST_F(NearField, RaysFromTheEyeAndFromBehindAreSound) {
     std::vector<glm::vec3> corners;
     for (const glm::vec3& p : square()) corners.emplace_back(p.x, 1, p.y);
     const Scene scene = trianglesScene(corners);
-    TestRays::rays = {rayRecord({0, -3, 0.5f}, {0, 1, 0}), rayRecord({0, -4, 0.5f}, {0, -1, 0}),
+    RaySource::rays = {rayRecord({0, -3, 0.5f}, {0, 1, 0}), rayRecord({0, -4, 0.5f}, {0, -1, 0}),
                       rayRecord({0, -3, 0.5f}, {1, 0, 0}), rayRecord({0, -5, 0.5f}, {0, 1, 0}),
                       rayRecord({0, 2, 0.5f}, {0, 1, 0})};
-    for (shared::RayRecord& ray : TestRays::rays) ray.origin -= glm::vec3(scene.origin);
+    for (shared::RayRecord& ray : RaySource::rays) ray.origin -= glm::vec3(scene.origin);
     Renderer made = traced(scene, {"query.rays=own.rays", "query.tracer=screen.tracer"}, {{"query", "hits"}});
     made.setFreeCamera(lookingFrom(scene, {0, -3, 0.5f}, {0, 1, 0.5f}));
     made.frame();

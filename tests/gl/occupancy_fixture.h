@@ -10,6 +10,7 @@
 #include "passes/occupancy/roma.h"
 #include "passes/occupancy/roma_cascade.h"
 #include "passes/ray_effects/ray_query.h"
+#include "gl/ray_source.h"
 #include "shared/ray.h"
 #include <bit>
 #include <limits>
@@ -61,29 +62,6 @@ inline std::vector<glm::vec3> randomTriangles(int count, std::uint32_t seed, flo
     }
     return corners;
 }
-
-// Hands a list of rays to whoever asks.
-class RaySource final : public Pass {
-public:
-    static PassType type() {
-        return Describe<RaySource>("RaySource", "Rays of a test")
-            .output("rays", PortKind::Buffer, "Ray records");
-    }
-    static inline std::vector<shared::RayRecord> rays;
-    [[nodiscard]] Declaration declare(const World&, const Inputs&, const Demand&) const override {
-        Declaration declaration;
-        declaration.outputs = {
-            {.port = "rays", .desc = Desc::buffer(rays.size() * sizeof(shared::RayRecord))}};
-        declaration.steps = {{.name = "upload",
-                              .shaders = {},
-                              .defines = {},
-                              .uses = {{.port = "rays", .access = Access::Copy, .write = true}},
-                              .modules = {}}};
-        declaration.depends = Causes::Frame;
-        return declaration;
-    }
-    void execute(const Step&, Commands& commands) override { commands.upload("rays", rays); }
-};
 
 // Hands out an occupancy map that no scene has made.
 class MapSource final : public Pass {

@@ -3,40 +3,17 @@
 #pragma once
 #include "execute/commands.h"
 #include "image/error_figures.h"
-#include "shared/ray.h"
+#include "ray_source.h"
 #include "shipped_fixture.h"
 #include <limits>
 #include <random>
 
 namespace kestrel::test {
 
-// Hands a list of rays to whoever asks.
-class TestRays final : public Pass {
-public:
-    static PassType type() {
-        return Describe<TestRays>("TestRays", "Rays of a test")
-            .output("rays", PortKind::Buffer, "Ray records");
-    }
-    static inline std::vector<shared::RayRecord> rays;
-    [[nodiscard]] Declaration declare(const World&, const Inputs&, const Demand&) const override {
-        Declaration declaration;
-        declaration.outputs = {
-            {.port = "rays", .desc = Desc::buffer(rays.size() * sizeof(shared::RayRecord))}};
-        declaration.steps = {{.name = "upload",
-                              .shaders = {},
-                              .defines = {},
-                              .uses = {{.port = "rays", .access = Access::Copy, .write = true}},
-                              .modules = {}}};
-        declaration.depends = Causes::Frame;
-        return declaration;
-    }
-    void execute(const Step&, Commands& commands) override { commands.upload("rays", rays); }
-};
-
 inline const Registry& tracedRegistry() {
     static const Registry instance = [] {
         Registry registry = shipped();
-        registry.add(TestRays::type());
+        registry.add(RaySource::type());
         return registry;
     }();
     return instance;
@@ -56,7 +33,7 @@ inline Graph tracedGraph(const std::vector<std::string>& settings, const std::ve
         "hybrid": {"type": "NearFarTracer"},
         "nested": {"type": "NearFarTracer", "properties": {"reach": 0.5}},
         "rays": {"type": "HemisphereRays"},
-        "own": {"type": "TestRays"},
+        "own": {"type": "RaySource"},
         "query": {"type": "RayQuery", "properties": {"query": "closest"}},
         "other": {"type": "RayQuery", "properties": {"query": "closest"}},
         "ao": {"type": "RayAmbientOcclusion", "properties": {"rays": 4, "snap": true}},
@@ -118,7 +95,7 @@ struct TracedTest : ShippedTest {
     static std::vector<shared::HitRecord> ask(const Scene& scene, const std::string& tracer,
                                               std::vector<shared::RayRecord> rays,
                                               std::vector<std::string> settings = {}) {
-        TestRays::rays = std::move(rays);
+        RaySource::rays = std::move(rays);
         settings.push_back("query.rays=own.rays");
         settings.push_back("query.tracer=" + tracer);
         Renderer made = traced(scene, settings, {{"query", "hits"}});

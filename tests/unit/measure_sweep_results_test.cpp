@@ -1,6 +1,6 @@
 #include "core/files.h"
 #include "measure/sweep_results.h"
-#include "measure/sweep_run.h"
+#include "measure/sweep_hits.h"
 #include "shared/ray.h"
 #include <cmath>
 #include <fmt/format.h>

@@ -1,0 +1,18 @@
+// The steps of an effect that traces rays from every pixel. Needs no GL.
+#pragma once
+#include "graph/pass.h"
+#include "scene/facts.h"
+#include <vector>
+
+namespace kestrel {
+
+// Rays a pixel that one step traces at most: the rays' loop around a tracer's own loop must stay below the
+// trips after which llvmpipe silently stops a loop nest (65,535).
+inline constexpr int maxRaysPerStep = 16;
+
+// `step` as often as `rays` rays a pixel need, named "trace0", "trace1"…, in the group "tracing". Each gets
+// the defines RAYS and FIRST_RAY (its own), TOTAL_RAYS, CONTINUES (all but the first: images hold sums of the
+// steps before), ENDS (the last: makes means of them), and those of the materials that hits may lie on.
+std::vector<Step> raySteps(Step step, int rays, const SceneFacts& facts);
+
+} // namespace kestrel
