@@ -4,7 +4,7 @@
 namespace kestrel {
 
 static_assert(sizeof(FrameData) == 48 && offsetof(FrameData, sceneBounds) == 32);
-static_assert(sizeof(ViewData) == 7 * 64 + 48 && offsetof(ViewData, position) == 7 * 64 &&
+static_assert(sizeof(ViewData) == 7 * 64 + 48 + 64 && offsetof(ViewData, position) == 7 * 64 &&
               offsetof(ViewData, jitter) == 7 * 64 + 32);
 
 namespace {
@@ -32,6 +32,26 @@ glm::dmat4 projectionOver(const CameraState& camera, const Extent& frame, const 
     window[3][0] = shift.x;
     window[3][1] = shift.y;
     return window * projection;
+}
+
+// What positionFromDepth() of lib/view.glsl needs.
+void fillWays(ViewData& data, const glm::dmat4& inverseView, const glm::dmat4& inverseProjection,
+              bool orthographic) {
+    // The point of a pixel coordinate on a plane in front of the eye, as seen from there, over its depth.
+    const auto way = [&](double x, double y) {
+        const glm::dvec2 ndc = 2.0 * glm::dvec2(x, y) / glm::dvec2(data.size) - 1.0;
+        const glm::dvec4 point = inverseProjection * glm::dvec4(ndc, 1, 1);
+        const glm::dvec3 eye = glm::dvec3(point) / point.w;
+        const glm::dvec3 seen = orthographic ? glm::dvec3(eye.x, eye.y, 0) : eye / -eye.z;
+        return glm::dmat3(inverseView) * seen;
+    };
+    const glm::dvec3 corner = way(0, 0);
+    const glm::dvec3 ahead = orthographic ? -glm::dvec3(inverseView[2]) : glm::dvec3(0);
+    // eye.z and eye.w of (0, 0, depth, 1).
+    data.corner = glm::vec4(corner, -inverseProjection[2][2]);
+    data.rightward = glm::vec4(way(1, 0) - corner, -inverseProjection[3][2]);
+    data.upward = glm::vec4(way(0, 1) - corner, inverseProjection[2][3]);
+    data.ahead = glm::vec4(ahead, inverseProjection[3][3]);
 }
 
 } // namespace
@@ -72,6 +92,7 @@ ViewData viewData(const View& view, const Extent& extent, const ViewFrame& frame
     data.jitter = jitter;
     data.nearPlane = frame.camera.nearPlane;
     data.farPlane = frame.camera.farPlane > 0 ? frame.camera.farPlane : 0;
+    fillWays(data, glm::inverse(eye), glm::inverse(projection), frame.camera.orthographic);
     return data;
 }
 

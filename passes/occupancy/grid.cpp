@@ -4,7 +4,7 @@
 
 namespace kestrel {
 
-static_assert(sizeof(shared::OccupancyGrid) == 32);
+static_assert(sizeof(shared::OccupancyGrid) == 64);
 static_assert(offsetof(shared::OccupancyGrid, inverseCellSize) == 16);
 static_assert(sizeof(shared::OccupancySettings) == 16);
 
@@ -33,7 +33,16 @@ bool hasExtent(const Sphere& sphere, int resolution) {
     return std::isnormal(cell) && std::isnormal(1 / cell);
 }
 
-shared::OccupancyGrid occupancyGrid(const Sphere& sphere, int resolution, const glm::vec3& jitter) {
+void boundOccupied(shared::OccupancyGrid& grid, const Box& box) {
+    // From a surface to the far side of a cell that it touches, and some rounding.
+    constexpr float beyond = 1.25f;
+    const glm::vec3 corner(grid.halfResolution);
+    grid.low = glm::clamp(centredCells(grid, box.min) - beyond, -corner, corner);
+    grid.high = glm::clamp(centredCells(grid, box.max) + beyond, -corner, corner);
+}
+
+shared::OccupancyGrid occupancyGrid(const Sphere& sphere, const Box& box, int resolution,
+                                    const glm::vec3& jitter) {
     const float cell = hasExtent(sphere, resolution) ? cellSize(sphere, resolution) : 1.0f;
     shared::OccupancyGrid grid{};
     grid.centre = sphere.centre + jitter * cell;
@@ -41,8 +50,7 @@ shared::OccupancyGrid occupancyGrid(const Sphere& sphere, int resolution, const 
     grid.inverseCellSize = 1 / cell;
     grid.halfResolution = static_cast<float>(resolution) / 2;
     grid.resolution = static_cast<std::uint32_t>(resolution);
-    // From a surface to the farthest point of a cell that it touches: a diagonal, and some rounding.
-    grid.reach = static_cast<float>(resolution) / 2 - occupancyMargin + glm::length(jitter) + 1.75f;
+    boundOccupied(grid, box);
     return grid;
 }
 

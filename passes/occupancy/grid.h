@@ -22,10 +22,14 @@ std::uint64_t occupancyBytes(int resolution);
 std::optional<int> occupancyResolution(const Desc& buffer);
 
 // A cube around the scene's bounding sphere over its whole timeline, not its box: any rotation of the cube
-// about its centre then contains the scene too. `jitter` shifts the cells, in cells, each component in [-0.5,
-// 0.5]. A sphere without extent gives a valid grid around its centre with cells of size 1.
-shared::OccupancyGrid occupancyGrid(const Sphere& sphere, int resolution,
+// about its centre then contains the scene too. `box` are the scene's bounds within the sphere. `jitter`
+// shifts the cells, in cells, each component in [-0.5, 0.5]. A sphere without extent gives a valid grid
+// around its centre with cells of size 1.
+shared::OccupancyGrid occupancyGrid(const Sphere& sphere, const Box& box, int resolution,
                                     const glm::vec3& jitter = glm::vec3(0));
+
+// Sets `low` and `high`, after `centre` and `inverseCellSize`, from the bounds of what is marked in the grid.
+void boundOccupied(shared::OccupancyGrid& grid, const Box& box);
 
 // Whether a scene with this sphere has anything that cells could be measured by.
 bool hasExtent(const Sphere& sphere, int resolution);

@@ -188,7 +188,8 @@ void OccupancyMap::uploadGrid(Commands& commands) const {
         const glm::vec2 height = shared::scrambledSobol(frame.index, shared::hashCombine(seed, 1));
         shift = glm::vec3(plane, height.x) - 0.5f;
     }
-    commands.uploadValue("grid", occupancyGrid(commands.facts().sphere, resolution, shift));
+    commands.uploadValue("grid",
+                         occupancyGrid(commands.facts().sphere, commands.facts().bounds, resolution, shift));
 }
 
 } // namespace kestrel

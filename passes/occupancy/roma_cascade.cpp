@@ -12,16 +12,16 @@ namespace kestrel {
 namespace {
 
 // Where the levels lie, finest first.
-std::vector<shared::OccupancyGrid> cascadeGrids(const Sphere& sphere, const glm::vec3& camera, int levels,
+std::vector<shared::OccupancyGrid> cascadeGrids(const SceneFacts& facts, const glm::vec3& camera, int levels,
                                                 float ratio, int resolution) {
     std::vector<shared::OccupancyGrid> grids(static_cast<size_t>(levels));
-    grids.back() = occupancyGrid(sphere, resolution);
+    grids.back() = occupancyGrid(facts.sphere, facts.bounds, resolution);
     for (size_t i = grids.size() - 1; i-- > 0;) {
         shared::OccupancyGrid& grid = grids[i] = grids[i + 1];
         grid.cellSize *= ratio;
         grid.inverseCellSize = 1 / grid.cellSize;
-        grid.reach = 0; // the scene goes on beyond the cube
         grid.centre = glm::round(camera * grid.inverseCellSize) * grid.cellSize;
+        boundOccupied(grid, facts.bounds);
     }
     return grids;
 }
@@ -164,7 +164,7 @@ void RomaCascade::begin(const Step& step, Commands& commands) {
     const FrameInfo& frame = commands.frame();
     const bool changed = any(commands.causes() & ~(Causes::Frame | Causes::Camera | Causes::Cut));
     std::vector<shared::OccupancyGrid> grids =
-        cascadeGrids(commands.facts().sphere, frame.cameraState.position, levels, ratio, resolution);
+        cascadeGrids(commands.facts(), frame.cameraState.position, levels, ratio, resolution);
     stale_.assign(grids.size(), true);
     if (!changed && grids_.size() == grids.size())
         for (size_t i = 0; i < grids.size(); ++i) stale_[i] = !sameGrid(grids[i], grids_[i]);

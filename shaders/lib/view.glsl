@@ -9,15 +9,17 @@ vec3 eyePositionFromDepth(ViewData view, vec2 pixel, float depth) {
     return eye.xyz / eye.w;
 }
 
-// Render-space position of a depth at a pixel coordinate. Goes by way of eye space, where nothing cancels.
-vec3 positionFromDepth(ViewData view, vec2 pixel, float depth) {
-    return (view.inverseView * vec4(eyePositionFromDepth(view, pixel, depth), 1.0)).xyz;
-}
-
 // Distance along the viewing axis, positive in front of the eye.
 float viewDepth(ViewData view, float depth) {
-    vec4 eye = view.inverseProjection * vec4(0.0, 0.0, depth, 1.0);
-    return -eye.z / eye.w;
+    return (view.corner.w * depth + view.rightward.w) / (view.upward.w * depth + view.ahead.w);
+}
+
+// Render-space position of a depth at a pixel coordinate. By a ray from the eye: two matrices in its place took a fifth of
+// the time of an effect with one ray a pixel.
+vec3 positionFromDepth(ViewData view, vec2 pixel, float depth) {
+    float z = viewDepth(view, depth);
+    vec3 way = view.corner.xyz + pixel.x * view.rightward.xyz + pixel.y * view.upward.xyz;
+    return view.position.xyz + (view.position.w != 0.0 ? 1.0 : z) * way + z * view.ahead.xyz;
 }
 
 // Pixel coordinate and depth of a render-space position; false behind the eye. Outside the image where pixel is.

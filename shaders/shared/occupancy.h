@@ -20,7 +20,11 @@ struct OccupancyGrid {
     float inverseCellSize;
     float halfResolution;   // N / 2
     uint resolution;       // N
-    float reach;           // in cells: no point farther from the centre lies in an occupied cell; 0: unknown
+    float pad0;
+    vec3 low;               // centred cells: the box that all occupied cells lie in, the whole cube if nothing is known
+    float pad1;
+    vec3 high;
+    float pad2;
 };
 
 // Where rays through a map begin (occupancyBegin() of shaders/lib/occupancy.glsl). 16 bytes of a uniform block (std140).

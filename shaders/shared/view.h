@@ -32,6 +32,13 @@ struct ViewData {
     vec2 jitter;             // pixels of this image, in [-0.5, 0.5]
     float nearPlane;
     float farPlane;          // 0: infinite
+    // Where a pixel coordinate's surface lies in render space, in a few numbers (positionFromDepth() of lib/view.glsl): the
+    // way from `position` at viewing depth 1, at pixel coordinate (0, 0), and what a pixel to the right and one up adds. Of
+    // parallel rays the way holds at every depth, and `ahead` is their direction; of others it is zero.
+    vec4 corner; // .w of these four: the viewing depth is (corner.w d + rightward.w) / (upward.w d + ahead.w) of depth d
+    vec4 rightward;
+    vec4 upward;
+    vec4 ahead;
 };
 
 SHARED_END

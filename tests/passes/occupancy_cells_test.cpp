@@ -40,7 +40,8 @@ TEST(OccupancyCells, TheGridHoldsTheSphereWithItsMargin) {
         for (const int n : {32, 64, 128, 256}) {
             const Sphere sphere{{radius, -2 * radius, 3 * radius}, radius};
             for (const glm::vec3 jitter : {glm::vec3(0), glm::vec3(0.5f), glm::vec3(-0.5f)}) {
-                const shared::OccupancyGrid grid = occupancyGrid(sphere, n, jitter);
+                const Box box{sphere.centre - 0.5f * radius, sphere.centre + 0.25f * radius};
+                const shared::OccupancyGrid grid = occupancyGrid(sphere, box, n, jitter);
                 for (int k = 0; k < 3; ++k) {
                     glm::vec3 end = sphere.centre;
                     end[k] += radius;
@@ -48,6 +49,13 @@ TEST(OccupancyCells, TheGridHoldsTheSphereWithItsMargin) {
                     end[k] -= 2 * radius;
                     EXPECT_GT(shared::cellsOf(grid, end)[k], 0.49f);
                 }
+                // The box, and a cell beyond: what a cell that touches it may reach.
+                const glm::vec3 low = shared::centredCells(grid, box.min) - 1.0f;
+                const glm::vec3 high = shared::centredCells(grid, box.max) + 1.0f;
+                EXPECT_TRUE(glm::all(glm::lessThan(grid.low, low)) &&
+                            glm::all(glm::greaterThan(grid.high, high)));
+                EXPECT_TRUE(glm::all(glm::greaterThan(grid.low, low - 1.0f)) &&
+                            glm::all(glm::lessThan(grid.high, high + 1.0f)));
                 const glm::vec3 cells(1, 2, 3);
                 EXPECT_LT(glm::length(shared::cellsOf(grid, shared::fromCells(grid, cells)) - cells), 1e-3f);
             }
@@ -58,7 +66,7 @@ TEST(OccupancyCells, TheGridHoldsTheSphereWithItsMargin) {
 TEST(OccupancyCells, ASphereWithoutExtentHasAUsableGrid) {
     for (const float radius : {0.0f, 1e-42f, std::numeric_limits<float>::infinity()}) {
         EXPECT_FALSE(hasExtent({glm::vec3(0), radius}, 64));
-        EXPECT_EQ(occupancyGrid({glm::vec3(0), radius}, 64).cellSize, 1.0f);
+        EXPECT_EQ(occupancyGrid({glm::vec3(0), radius}, Box{}, 64).cellSize, 1.0f);
     }
 }
 

@@ -67,7 +67,11 @@ TEST(SharedLayout, View) {
         {"view.divisor", offsetof(ViewData, divisor)},
         {"view.jitter", offsetof(ViewData, jitter)},
         {"view.nearPlane", offsetof(ViewData, nearPlane)},
-        {"view.farPlane", offsetof(ViewData, farPlane)}};
+        {"view.farPlane", offsetof(ViewData, farPlane)},
+        {"view.corner", offsetof(ViewData, corner)},
+        {"view.rightward", offsetof(ViewData, rightward)},
+        {"view.upward", offsetof(ViewData, upward)},
+        {"view.ahead", offsetof(ViewData, ahead)}};
     for (const auto& [member, offset] : members) expectOffset(*block, member, offset);
 }
 
