@@ -96,7 +96,7 @@ void addSceneCommand(CLI::App& app, Run& run) {
     CLI::App* scene =
         app.add_subcommand("scene", "List the built-in scenes, tell a scene's facts, export it");
     scene->require_subcommand(1);
-    const char* sourceHelp = "A .gltf or .glb file, builtin:NAME, or builtin:NAME?detail=0.1";
+    const char* sourceHelp = "A .gltf or .glb file, builtin:NAME, or builtin:NAME?detail=0.1&split=4";
 
     CLI::App* list = scene->add_subcommand("list", "List the built-in scenes");
     list->add_flag("--json", arguments->json, "Print JSON");
@@ -113,10 +113,15 @@ void addSceneCommand(CLI::App& app, Run& run) {
     exported->add_option("FILE", arguments->file, "The .glb file to write")->required();
     exported->callback(
         [arguments, &run] { run = [arguments] { return exportTo(arguments->source, arguments->file); }; });
-    scene->footer("Examples:\n"
-                  "  kestrel scene list\n"
-                  "  kestrel scene info model.glb --json\n"
-                  "  kestrel scene export builtin:tower tower.glb");
+    scene->footer(
+        "Built-in scenes have two properties, as in 'builtin:tower?detail=0.1&split=4' (in quotes: '?' and\n"
+        "'&' mean something to a shell): detail, 0.01 to 4, scales the number of triangles; split, 1 to 64,\n"
+        "cuts each triangle into that number squared: the same surface in more triangles.\n"
+        "Examples:\n"
+        "  kestrel scene list\n"
+        "  kestrel scene info model.glb --json\n"
+        "  kestrel scene info 'builtin:blob?detail=0.0127&split=22'\n"
+        "  kestrel scene export builtin:tower tower.glb");
 }
 
 } // namespace kestrel

@@ -1,6 +1,8 @@
 #include "scene/builtin.h"
 #include "core/error.h"
 #include "scene/builtin/scenes.h"
+#include "scene/builtin/split.h"
+#include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
 #include <string_view>
@@ -36,21 +38,50 @@ std::vector<std::string> names() {
     return all;
 }
 
-// The value of detail in "detail=0.1".
-double parseDetail(const std::string& source, std::string_view query) {
-    const size_t equals = query.find('=');
-    const std::string key(query.substr(0, equals));
-    if (key != "detail") {
-        throw InputError(fmt::format("{}: unknown property '{}' of a built-in scene{}; there is: detail",
-                                     source, key, didYouMean(key, {"detail"})));
-    }
-    const std::string_view text = equals == std::string_view::npos ? "" : query.substr(equals + 1);
-    double value = 0;
+// What stands behind '?': "detail=0.1&split=4".
+struct Query {
+    double detail = 1;
+    int split = 1;
+};
+
+// The whole of `text` as a number within the range.
+template<class Number>
+Number parseNumber(const std::string& source, std::string_view key, std::string_view text, Number minimum,
+                   Number maximum, std::string_view kind) {
+    Number value{};
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (status != std::errc() || end != text.data() + text.size() || !(value >= 0.01 && value <= 4)) {
-        throw InputError(fmt::format("{}: detail is '{}'; it must be a number from 0.01 to 4", source, text));
+    if (status != std::errc() || end != text.data() + text.size() ||
+        !(value >= minimum && value <= maximum)) {
+        throw InputError(fmt::format("{}: {} is '{}'; it must be a {} from {} to {}", source, key, text, kind,
+                                     minimum, maximum));
     }
     return value;
+}
+
+Query parseQuery(const std::string& source, std::string_view text) {
+    Query query;
+    std::vector<std::string> seen;
+    for (size_t begin = 0; begin <= text.size();) {
+        const size_t end = std::min(text.find('&', begin), text.size());
+        const std::string_view part = text.substr(begin, end - begin);
+        begin = end + 1;
+        const size_t equals = std::min(part.find('='), part.size());
+        const std::string key(part.substr(0, equals));
+        const std::string_view value = part.substr(std::min(equals + 1, part.size()));
+        if (std::ranges::find(seen, key) != seen.end())
+            throw InputError(fmt::format("{}: the property '{}' is there twice", source, key));
+        if (key == "detail") {
+            query.detail = parseNumber(source, key, value, 0.01, 4.0, "number");
+        } else if (key == "split") {
+            query.split = parseNumber(source, key, value, 1, 64, "whole number");
+        } else {
+            throw InputError(
+                fmt::format("{}: unknown property '{}' of a built-in scene{}; there are: detail, split",
+                            source, key, didYouMean(key, {"detail", "split"})));
+        }
+        seen.push_back(key);
+    }
+    return query;
 }
 
 } // namespace
@@ -70,11 +101,16 @@ Scene builtinScene(const std::string& source) {
     const std::string_view rest = std::string_view(source).substr(prefix.size());
     const size_t question = rest.find('?');
     const std::string name(rest.substr(0, question));
-    const double detail =
-        question == std::string_view::npos ? 1.0 : parseDetail(source, rest.substr(question + 1));
+    const Query query =
+        question == std::string_view::npos ? Query{} : parseQuery(source, rest.substr(question + 1));
     for (const Entry& entry : entries) {
         if (entry.name != name) continue;
-        Scene scene = entry.make(builtin::Detail(detail));
+        Scene scene = entry.make(builtin::Detail(query.detail));
+        try {
+            builtin::splitTriangles(scene, query.split);
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("{}: {}", source, error.what()));
+        }
         scene.name = std::string(prefix) + name;
         scene.source = source;
         return scene;

@@ -1,12 +1,16 @@
 // The built-in scenes: what each promises, that they are the same every time, and that their meshes are
 // sound.
 #include "core/error.h"
+#include "passes/occupancy_oracle.h"
 #include "scene/builtin.h"
 #include "scene/builtin/noise.h"
+#include "scene/builtin/shapes.h"
+#include "scene/builtin/split.h"
 #include "scene/bvh_trace.h"
 #include "scene/facts.h"
 #include "scene/geometry.h"
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <gmock/gmock.h>
@@ -231,6 +235,153 @@ TEST(Builtin, NamesAreRecognised) {
     EXPECT_EQ(built("blob", "?detail=0.5").name, "builtin:blob");
 }
 
+// Area of all triangles, in double.
+double areaOf(const Geometry& g) {
+    double area = 0;
+    for (size_t i = 0; i < g.indices.size(); i += 3) {
+        const glm::dvec3 a(g.positions[g.indices[i]]), b(g.positions[g.indices[i + 1]]),
+            c(g.positions[g.indices[i + 2]]);
+        area += 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    return area;
+}
+
+// The triangles of `whole`'s meshes in `parts` are split into n * n each, in the order of the old ones.
+void expectParts(const Primitive& whole, const Primitive& parts, size_t n) {
+    ASSERT_EQ(parts.indices.size(), whole.indices.size() * n * n);
+    ASSERT_EQ(parts.normals.size(), parts.positions.size());
+    ASSERT_EQ(parts.texCoords.size(), parts.positions.size());
+    for (size_t i = 0; i < whole.positions.size(); ++i) {
+        ASSERT_EQ(parts.positions[i], whole.positions[i]);
+        ASSERT_EQ(parts.normals[i], whole.normals[i]);
+    }
+    for (size_t i = 0; i < parts.indices.size(); i += 3) {
+        const auto corner = [&](const Primitive& p, size_t of, size_t k) {
+            return glm::dvec3(p.positions[p.indices[of + k]]);
+        };
+        const size_t old = i / 3 / (n * n) * 3;
+        const glm::dvec3 a = corner(whole, old, 0), b = corner(whole, old, 1), c = corner(whole, old, 2);
+        const glm::dvec3 normal = glm::cross(b - a, c - a);
+        const double twiceArea = glm::length(normal);
+        const double ulp =
+            std::ldexp(std::max({glm::length(a), glm::length(b), glm::length(c)}), -23); // of any coordinate
+        if (twiceArea < 1e4 * ulp * glm::length(b - a)) continue; // it has no plane to speak of
+        for (size_t k = 0; k < 3; ++k) {
+            const glm::dvec3 p = corner(parts, i, k);
+            ASSERT_LE(std::abs(glm::dot(p - a, normal)) / twiceArea, 2 * ulp);
+            // Barycentric weights: inside, and multiples of 1 / n.
+            const double wb = glm::dot(glm::cross(p - a, c - a), normal) / (twiceArea * twiceArea);
+            const double wc = glm::dot(glm::cross(b - a, p - a), normal) / (twiceArea * twiceArea);
+            const double slack = 4 * ulp * (glm::length(b - a) + glm::length(c - a)) / twiceArea;
+            ASSERT_GE(std::min(wb, wc), -slack);
+            ASSERT_LE(wb + wc, 1 + slack);
+            ASSERT_NEAR(wb * static_cast<double>(n), std::round(wb * static_cast<double>(n)),
+                        slack * static_cast<double>(n));
+        }
+        const glm::dvec3 p = corner(parts, i, 0);
+        const glm::dvec3 part = glm::cross(corner(parts, i, 1) - p, corner(parts, i, 2) - p);
+        // The same winding and an equal share of the area.
+        ASSERT_NEAR(glm::dot(part, normal) / (twiceArea * twiceArea) * static_cast<double>(n * n), 1,
+                    static_cast<double>(n) * 8 * ulp * (glm::length(b - a) + glm::length(c - a)) / twiceArea);
+    }
+}
+
+TEST_P(EveryBuiltin, IsTheSameSurfaceInMoreTriangles) {
+    const std::string few = "?detail=0.02";
+    if (GetParam() == "skinned") {
+        EXPECT_THROW((void)built("skinned", few + "&split=2"), InputError);
+        EXPECT_EQ(hashOf(built("skinned", few + "&split=1")), hashOf(built("skinned", few)));
+        return;
+    }
+    const Scene whole = built(GetParam(), few);
+    for (const size_t n : {size_t{2}, size_t{5}}) {
+        const Scene parts = built(GetParam(), few + "&split=" + std::to_string(n));
+        EXPECT_EQ(parts.origin, whole.origin);
+        for (const double time : {0.0, 0.4 * whole.duration()}) {
+            const Geometry a = flatten(whole, time), b = flatten(parts, time);
+            EXPECT_EQ(b.triangleCount(), a.triangleCount() * n * n);
+            EXPECT_EQ(a.bounds.min, b.bounds.min);
+            EXPECT_EQ(a.bounds.max, b.bounds.max);
+            EXPECT_NEAR(areaOf(b), areaOf(a), 1e-5 * areaOf(a));
+            for (const VertexAttributes& v : b.attributes) ASSERT_NEAR(glm::length(v.normal), 1, 1e-4);
+        }
+        ASSERT_EQ(parts.meshes.size(), whole.meshes.size());
+        for (size_t m = 0; m < whole.meshes.size(); ++m)
+            for (size_t p = 0; p < whole.meshes[m].primitives.size(); ++p)
+                ASSERT_NO_FATAL_FAILURE(
+                    expectParts(whole.meshes[m].primitives[p], parts.meshes[m].primitives[p], n))
+                    << whole.meshes[m].name;
+    }
+}
+
+// How many edges, by the positions of their ends, have how many triangles.
+std::map<int, size_t> edgesByTriangles(const Primitive& mesh) {
+    using Point = std::array<float, 3>;
+    std::map<std::pair<Point, Point>, int> edges;
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        for (size_t k = 0; k < 3; ++k) {
+            const glm::vec3& a = mesh.positions[mesh.indices[i + k]];
+            const glm::vec3& b = mesh.positions[mesh.indices[i + (k + 1) % 3]];
+            ++edges[std::minmax(Point{a.x, a.y, a.z}, Point{b.x, b.y, b.z})];
+        }
+    }
+    std::map<int, size_t> counts;
+    for (const auto& [edge, triangles] : edges) ++counts[triangles];
+    return counts;
+}
+
+TEST(BuiltinSplit, LeavesNoCracks) {
+    // A box is closed, though each side has vertices of its own.
+    Scene scene;
+    scene.meshes.resize(1);
+    scene.meshes[0].primitives.resize(1);
+    Primitive& box = scene.meshes[0].primitives[0];
+    builtin::addBox(box, glm::mat4(1), {0.3f, 0.7f, 1.1f}, 1);
+    const glm::quat turn = glm::normalize(glm::quat(0.7f, 0.3f, -0.5f, 0.2f));
+    for (glm::vec3& position : box.positions) position = turn * position;
+    EXPECT_EQ(edgesByTriangles(box), (std::map<int, size_t>{{2, 18}}));
+    builtin::splitTriangles(scene, 7);
+    EXPECT_EQ(edgesByTriangles(box), (std::map<int, size_t>{{2, 18 * 49}}));
+    // What is open stays as open: n parts of each edge, and 3 n (n - 1) / 2 edges inside each triangle.
+    const auto edges = [](const char* query) {
+        return edgesByTriangles(built("blob", query).meshes[1].primitives[0]);
+    };
+    const auto whole = edges("?detail=0.02"), parts = edges("?detail=0.02&split=3");
+    const size_t triangles = (whole.at(1) + 2 * whole.at(2)) / 3;
+    EXPECT_EQ(parts, (std::map<int, size_t>{{1, 3 * whole.at(1)}, {2, 3 * whole.at(2) + 9 * triangles}}));
+}
+
+TEST(BuiltinSplit, MarksTheSameCells) {
+    // Up to cells that the surface just touches: new vertices are rounded.
+    for (const std::string name : {"blob?detail=0.02", "cornell?detail=1", "tower?detail=0.01"}) {
+        const Scene scene = built(name);
+        const Sphere sphere = gatherFacts(scene).sphere;
+        shared::OccupancyGrid grid{};
+        grid.resolution = 64;
+        grid.halfResolution = 32;
+        grid.centre = sphere.centre;
+        grid.cellSize = 2 * sphere.radius / 62;
+        grid.inverseCellSize = 1 / grid.cellSize;
+        const auto whole = test::oracleMap(flatten(scene, 0), grid);
+        const auto parts = test::oracleMap(flatten(built(name, "&split=4"), 0), grid);
+        ASSERT_EQ(whole.size(), parts.size());
+        int marked = 0, differ = 0;
+        for (size_t i = 0; i < whole.size(); ++i) {
+            marked += std::popcount(whole[i]);
+            differ += std::popcount(whole[i] ^ parts[i]);
+        }
+        EXPECT_GT(marked, 2000) << name;
+        EXPECT_LE(differ, marked / 1000) << name;
+    }
+}
+
+TEST(BuiltinSplit, SharesTheVerticesOfEdges) {
+    // n * n parts of T triangles have about n * n * T / 2 vertices, not 3 * n * n * T.
+    const SceneFacts facts = gatherFacts(built("blob", "?detail=0.0127&split=22"));
+    EXPECT_NEAR(static_cast<double>(facts.triangles), 500'000, 50'000);
+    EXPECT_LT(facts.vertices, facts.triangles * 11 / 20);
+}
+
 std::string messageOf(const std::string& source) {
     try {
         (void)builtinScene(source);
@@ -247,6 +398,13 @@ TEST(Builtin, MistakesAreNamed) {
     for (const char* value :
          {"detail=", "detail", "detail=0", "detail=5", "detail=-1", "detail=nan", "detail=1x"})
         EXPECT_THAT(messageOf(std::string("builtin:blob?") + value), HasSubstr("from 0.01 to 4")) << value;
+    for (const char* value : {"split=", "split", "split=0", "split=65", "split=1.5", "detail=1&split=x"})
+        EXPECT_THAT(messageOf(std::string("builtin:blob?") + value), HasSubstr("whole number from 1 to 64"))
+            << value;
+    EXPECT_THAT(messageOf("builtin:blob?detail=1&split=2&detail=2"), HasSubstr("'detail' is there twice"));
+    EXPECT_THAT(messageOf("builtin:blob?split=2&"), HasSubstr("unknown property ''"));
+    EXPECT_THAT(messageOf("builtin:hall?detail=4&split=64"), HasSubstr("at most"));
+    EXPECT_THAT(messageOf("builtin:skinned?split=2"), HasSubstr("is skinned"));
 }
 
 TEST(BuiltinNoise, StaysInRangeAndVaries) {
