@@ -2,8 +2,10 @@
 #include "execute/commands.h"
 #include "grid.h"
 #include "shared/occupancy.h"
+#include "shared/occupied_cells.h"
 #include "tracing.h"
 #include <bit>
+#include <cstddef>
 #include <fmt/format.h>
 
 namespace kestrel {
@@ -16,7 +18,7 @@ Defines AlignedMaps::defines() const {
 
 Desc AlignedMaps::directionsDesc() const {
     return Desc::buffer(sizeof(shared::OccupancySettings) +
-                        sizeof(shared::RomaDirection) * static_cast<std::uint64_t>(directions),
+                            sizeof(shared::RomaDirection) * static_cast<std::uint64_t>(directions),
                         Format::RGBA32F);
 }
 
@@ -61,11 +63,71 @@ Step rotateStep(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
     return step;
 }
 
-void dispatchRotation(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands) {
-    if (step.defines.contains("IN_TURN")) {
-        commands.set("firstPlace", renewal.first);
-        commands.set("placeStride", renewalStride(maps.directions));
+Desc occupiedCellsDesc(const AlignedMaps& maps) {
+    // One cell in 32: more than are ever worth scattering (shaders/occupancy/occupied_cells.comp).
+    const std::uint64_t cells = 8 * occupancyBytes(maps.resolution) / 32;
+    return Desc::buffer(sizeof(shared::OccupiedCellsHeader) + 4 * cells);
+}
+
+std::vector<Step> scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
+                               const Capabilities& capabilities) {
+    Step rotate = rotateStep(maps, occupancy, inTurn, capabilities);
+    const Use base = rotate.uses.front();
+    const Use cells{.port = "cells", .access = Access::Storage};
+    const Use written{.port = "cells", .access = Access::Storage, .write = true};
+    const Use groups{.port = "cells", .access = Access::Indirect};
+    const Use turned{.port = "rotations", .access = Access::Uniform};
+    const Use rotated{.port = "maps", .access = Access::Storage, .write = true};
+
+    Step list = rotate;
+    list.name = "list";
+    list.shaders = {"occupancy/occupied_cells.comp"};
+    list.uses = {base, written};
+    Step choose = list;
+    choose.name = "choose";
+    choose.defines.emplace("CHOOSE", "1");
+    choose.uses = {{.port = "grid", .access = Access::Uniform}, written};
+    Step scatter = rotate;
+    scatter.name = "scatter";
+    scatter.shaders = {"occupancy/scatter.comp"};
+    scatter.uses = {turned, cells, rotated, groups};
+    Step blank = scatter;
+    blank.name = "blank";
+    blank.defines.emplace("BLANK", "1");
+    blank.uses = {rotated, groups};
+    rotate.uses.push_back(groups);
+    if (!inTurn) return {list, choose, scatter, rotate};
+    return {list, choose, blank, scatter, rotate};
+}
+
+void clearOccupiedCells(Commands& commands) { commands.uploadValue("cells", shared::OccupiedCellsHeader{}); }
+
+namespace {
+
+void setTurn(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands) {
+    if (!step.defines.contains("IN_TURN")) return;
+    commands.set("firstPlace", renewal.first);
+    commands.set("placeStride", renewalStride(maps.directions));
+}
+
+} // namespace
+
+void dispatchScatter(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands) {
+    using Header = shared::OccupiedCellsHeader;
+    if (step.name == "list")
+        return commands.dispatchOver(static_cast<std::uint32_t>(occupancyBytes(maps.resolution) / 4));
+    if (step.name == "choose") {
+        commands.set("mapCount", static_cast<std::uint32_t>(renewal.count));
+        return commands.dispatch(1);
     }
+    setTurn(step, maps, renewal, commands);
+    commands.dispatchIndirect("cells", step.name == "blank"     ? offsetof(Header, blank)
+                                       : step.name == "scatter" ? offsetof(Header, scatter)
+                                                                : offsetof(Header, rotate));
+}
+
+void dispatchRotation(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands) {
+    setTurn(step, maps, renewal, commands);
     const auto n = static_cast<std::uint32_t>(maps.resolution);
     commands.dispatchOver(n, n, static_cast<std::uint32_t>(renewal.count));
 }

@@ -15,7 +15,7 @@ struct AlignedMaps {
     [[nodiscard]] int words() const { return resolution / 32; }
     // The defines RESOLUTION, WORDS and DIRECTIONS of the shaders.
     [[nodiscard]] Defines defines() const;
-    // Of the uniform block `Directions`.
+    // Of the buffer `directions`.
     [[nodiscard]] Desc directionsDesc() const;
     [[nodiscard]] Desc rotationsDesc() const;
 };
@@ -27,6 +27,18 @@ AlignedMaps alignedMaps(int resolution, int angular, int levels, const Capabilit
 // Rotates "occupancy" (of this description) by "rotations" into "maps". `inTurn`: those of a Renewal.
 Step rotateStep(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
                 const Capabilities& capabilities);
+
+// Instead of rotateStep(): lists the occupied cells of the one base map in "cells", and where they are few
+// makes the maps from them alone (shaders/occupancy/scatter.comp). The steps "list", "choose",
+// "scatter" and "rotate"; in turn also "blank" in their midst, and else "maps" was cleared before.
+std::vector<Step> scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
+                               const Capabilities& capabilities);
+// Of "cells": room for as many as make scattering faster than visiting every cell.
+Desc occupiedCellsDesc(const AlignedMaps& maps);
+// In the step before "list".
+void clearOccupiedCells(Commands& commands);
+// In one of those steps. "list" is needed only where the base map has changed.
+void dispatchScatter(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands);
 
 // In the step that rotateStep() made: all maps, or those of the renewal in turn.
 void dispatchRotation(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands);

@@ -16,6 +16,7 @@ PassType Roma::type() {
         .internal("maps", PortKind::Buffer,
                   "The rotated maps, columns of words along each candidate direction")
         .internal("directions", PortKind::Buffer, "The candidate directions and their strata")
+        .internal("cells", PortKind::Buffer, "The occupied cells of the base map")
         .internal("rotations", PortKind::Buffer, "The rotated maps' axes in fixed point")
         .internal("exhausted", PortKind::Buffer,
                   "Rays traced without snapping, and those that ran out of iterations")
@@ -29,6 +30,10 @@ PassType Roma::type() {
         .flag("resample", &Roma::resample, "New candidate directions every frame; otherwise those of frame 0")
         .number("refresh", &Roma::refresh, 0, 256, "maps",
                 "How many maps a frame renews, in turn, while the occupancy map stays as it is; 0: all")
+        .choice(
+            "rotation", &Roma::rotation, {"automatic", "gather"},
+            "How maps are made: by visiting all of their cells, or from the occupied cells alone where these "
+            "are few")
         .flag("count_exhausted", &Roma::countExhausted,
               "Counts the rays that ran out of iterations and reports them with the next frame");
 }
@@ -68,14 +73,24 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
         addMapUses(maps, world.capabilities, tracer);
         // Renewed in turn: those of earlier frames are traced on.
         const bool inTurn = resample && refresh > 0 && refresh < maps.directions;
-        declaration.outputs.push_back({.port = "maps", .desc = maps.desc, .keeps = inTurn});
+        Output rotated{.port = "maps", .desc = maps.desc, .keeps = inTurn};
+        if (rotation == RotationMethod::Automatic && !inTurn) rotated.clear = glm::vec4(0);
+        declaration.outputs.push_back(rotated);
         if (refresh > 0 && !resample)
             declaration.leftOut.push_back({"renewing maps in turn", "the candidates stay as they are"});
         declaration.outputs.push_back({.port = "rotations", .desc = maps.rotationsDesc()});
         candidates.uses.push_back({.port = "rotations", .access = Access::Copy, .write = true});
         if (countExhausted) exhaustion::declare(declaration, tracer, candidates);
         declaration.steps.push_back(candidates);
-        declaration.steps.push_back(rotateStep(maps, base, inTurn, world.capabilities));
+        if (rotation == RotationMethod::Gather) {
+            declaration.steps.push_back(rotateStep(maps, base, inTurn, world.capabilities));
+        } else {
+            // Kept, so that a base map that stays as it is is listed once.
+            declaration.outputs.push_back({.port = "cells", .desc = occupiedCellsDesc(maps), .keeps = true});
+            declaration.steps.back().uses.push_back({.port = "cells", .access = Access::Copy, .write = true});
+            for (Step& step : scatterSteps(maps, base, inTurn, world.capabilities))
+                declaration.steps.push_back(std::move(step));
+        }
     }
     declaration.modules.push_back(std::move(tracer));
     if (resample) declaration.depends = Causes::Frame;
@@ -86,16 +101,21 @@ void Roma::execute(const Step& step, Commands& commands) {
     if (step.name == "report") return exhaustion::report(commands);
     if (step.name == "candidates") return upload(step, commands);
     const AlignedMaps maps{*occupancyResolution(commands.desc("occupancy")), angular * angular, 1, {}};
-    dispatchRotation(step, maps, renewal_, commands);
+    if (rotation == RotationMethod::Gather) return dispatchRotation(step, maps, renewal_, commands);
+    const bool listed = step.name == "list" && !changed_;
+    const bool chosen = step.name == "choose" && !changed_ && renewal_.count == countBefore_;
+    if (!listed && !chosen) dispatchScatter(step, maps, renewal_, commands);
 }
 
 void Roma::upload(const Step& step, Commands& commands) {
-    const bool changed = any(commands.causes() & ~Causes::Frame) ||
-                         any(commands.causes("occupancy") | commands.causes("grid"));
+    changed_ = any(commands.causes() & ~Causes::Frame) ||
+               any(commands.causes("occupancy") | commands.causes("grid"));
     const FrameInfo& frame = commands.frame();
+    countBefore_ = renewal_.count;
     renewal_ =
-        candidates_.draw(angular, resample ? refresh : 0, changed, resample ? frame.index : 0, frame.seed);
+        candidates_.draw(angular, resample ? refresh : 0, changed_, resample ? frame.index : 0, frame.seed);
     uploadCandidates(step, candidates_, offset, skip, commands);
+    if (changed_ && usesPort(step, "cells")) clearOccupiedCells(commands);
     if (usesPort(step, "exhausted")) exhaustion::clear(commands);
 }
 

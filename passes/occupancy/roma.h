@@ -7,6 +7,10 @@
 
 namespace kestrel {
 
+// How the rotated maps are made, with the same bits: `Automatic` from the occupied cells alone where these
+// are few.
+enum class RotationMethod : std::uint8_t { Automatic, Gather };
+
 // Rotates an occupancy map towards angular^2 candidate directions (section 4.1) and traces through them
 // (4.2).
 class Roma final : public Pass {
@@ -24,13 +28,16 @@ public:
     float skip = 2;
     bool resample = true;
     int refresh = 0;
+    RotationMethod rotation = RotationMethod::Automatic;
     bool countExhausted = false;
 
 private:
     void upload(const Step& step, Commands& commands);
 
     Candidates candidates_;
-    Renewal renewal_; // of this frame
+    Renewal renewal_;      // of this frame
+    int countBefore_ = 0;  // of the last frame's
+    bool changed_ = false; // the base map, since the last frame
 };
 
 } // namespace kestrel

@@ -7,18 +7,10 @@
 // Only the part of a column that lies within the box of occupied cells is stepped through, in parts of `stride` steps: the
 // cube holds the scene's sphere, of which even a cubical box fills a third, and the sphere fills half of the cube. Parts of a
 // constant number of steps, because a bound that is computed costs as much where it saves nothing.
-#include "lib/occupancy.glsl"
-#include "shared/roma.h"
+#include "occupancy/base_map.glsl"
+#include "occupancy/rotation.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
-#ifdef BASE_STORAGE
-layout(std430) readonly buffer Occupancy { uint occupancy[]; };
-#define BASE_WORD(index) occupancy[index]
-#else
-layout(r32ui) readonly uniform uimageBuffer occupancy;
-#define BASE_WORD(index) imageLoad(occupancy, index).x
-#endif
 
 #if WORDS == 1
 layout(std430) writeonly buffer Maps { uint maps[]; };
@@ -30,42 +22,22 @@ layout(std430) writeonly buffer Maps { uvec4 maps[]; };
 
 layout(std140) uniform Rotations { RomaRotation rotations[DIRECTIONS]; };
 
-#ifdef IN_TURN
-// The maps at these places of an order are made anew (Renewal of passes/occupancy/candidates.h).
-uniform int firstPlace;
-uniform int placeStride;
-#define MAP(z) (((firstPlace + (z)) * placeStride) % DIRECTIONS)
-#else
-#define MAP(z) (z)
-#endif
-
 #ifdef LEVELS
-// Several base maps one after the other; this step rotates one of them.
 layout(std140) uniform Grids { OccupancyGrid grids[LEVELS]; };
-uniform int level;
-#define LOW grids[level].low
-#define HIGH grids[level].high
-#define FIRST_WORD (level * (RESOLUTION * RESOLUTION * WORDS))
-#define FIRST_MAP (level * DIRECTIONS)
+#define GRID grids[level]
 #else
 layout(std140) uniform Grid { OccupancyGrid grid; };
-#define LOW grid.low
-#define HIGH grid.high
-#define FIRST_WORD 0
-#define FIRST_MAP 0
+#define GRID grid
 #endif
-
-const int whole = romaFractionBits;
 
 const int strideBits = 3;
 const int stride = 1 << strideBits;
 
-// The parts of a column, first and one past the last, that lie within the box of occupied cells: where a line from centred
-// cell `from` by `along` a step enters and leaves it.
-ivec2 partsWithin(vec3 from, vec3 along) {
-    vec3 inverse = finiteInverse(along);
-    vec3 a = (LOW - from) * inverse;
-    vec3 b = (HIGH - from) * inverse;
+// The parts of a column, first and one past the last, that lie within the box of occupied cells: where the column's line
+// from centred cell `from`, by one over `inverse` a step, enters and leaves it.
+ivec2 partsWithin(vec3 from, vec3 inverse) {
+    vec3 a = (GRID.low - from) * inverse;
+    vec3 b = (GRID.high - from) * inverse;
     vec3 nearer = min(a, b);
     vec3 farther = max(a, b);
     float enters = max(nearer.x, max(nearer.y, nearer.z));
@@ -78,14 +50,13 @@ void main() {
     ivec3 id = ivec3(gl_GlobalInvocationID);
     int map = MAP(id.z);
     // Not as a copy of the struct: a CPU driver then takes 1.5 times as long for the whole.
-    ivec3 halfX = rotations[map].halfX.xyz;
-    ivec3 halfY = rotations[map].halfY.xyz;
-    ivec3 halfZ = rotations[map].halfZ.xyz;
-    ivec3 position = ivec3((RESOLUTION / 2) << whole) + (2 * id.x + 1 - RESOLUTION) * halfX +
-                     (2 * id.y + 1 - RESOLUTION) * halfY + (1 - RESOLUTION) * halfZ;
-    ivec3 step_ = 2 * halfZ;
-    const float cell = 1.0 / float(1 << whole);
-    ivec2 parts = partsWithin(vec3(position) * cell - float(RESOLUTION / 2), vec3(step_) * cell);
+    ivec4 halfX = rotations[map].halfX;
+    ivec4 halfY = rotations[map].halfY;
+    ivec4 halfZ = rotations[map].halfZ;
+    ivec3 position = centreOf(ivec3(id.xy, 0), halfX.xyz, halfY.xyz, halfZ.xyz);
+    ivec3 step_ = 2 * halfZ.xyz;
+    ivec2 parts = partsWithin(vec3(position) / float(1 << whole) - float(RESOLUTION / 2),
+                              vec3(float(1 << whole)) / mix(vec3(1e-3), vec3(step_), notEqual(step_, ivec3(0))));
     position += stride * parts.x * step_;
     uint column[WORDS];
     for (int w = 0; w < WORDS; ++w) column[w] = 0u;

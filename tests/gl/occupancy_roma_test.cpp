@@ -2,6 +2,8 @@
 // maps.
 #include "gl/occupancy_fixture.h"
 #include "passes/occupancy/candidates.h"
+#include "shared/occupied_cells.h"
+#include <cstring>
 #include <fmt/format.h>
 
 namespace kestrel::test {
@@ -318,6 +320,39 @@ TEST_F(OccupancyRoma, WithoutResamplingTheMapsAreMadeOnce) {
     renderer.set("roma.resample=true");
     renderer.frame();
     EXPECT_TRUE(rotated(renderer.frame()));
+}
+
+// Which of the two ways made the maps: by the work groups of their steps.
+bool wereScattered(Renderer& renderer) {
+    const std::vector<std::uint32_t> words = wordsOf(renderer, {"roma", "cells"});
+    shared::OccupiedCellsHeader header{};
+    std::memcpy(&header, words.data(), sizeof(header));
+    EXPECT_EQ(header.scatter.x == 0, header.rotate.x > 0);
+    return header.scatter.x > 0;
+}
+
+TEST_F(OccupancyRoma, ScatteredAndGatheredMapsHaveTheSameBits) {
+    RaySource::rays = raysAround(10, 1, 9);
+    // Few cells are scattered; where most of the box is full, the list is too short for them.
+    for (const auto& [resolution, triangles, scattered] :
+         {std::tuple(32, 20, true), std::tuple(64, 300, true), std::tuple(128, 40, true),
+          std::tuple(256, 10, true), std::tuple(32, 4000, false)}) {
+        const auto mapsBy = [&, n = resolution, count = triangles](const char* rotation, bool& scatter) {
+            Renderer renderer =
+                romaRenderer(sceneOf(randomTriangles(count, 4)), fmt::format(R"("resolution": {})", n),
+                             fmt::format(R"("angular": 3, "rotation": "{}")", rotation),
+                             R"("query": "any", "snap": true)");
+            renderer.frame();
+            renderer.frame(); // where nothing is listed anew
+            scatter = std::string_view(rotation) == "automatic" && wereScattered(renderer);
+            return mapsOf(renderer).rotated;
+        };
+        bool scatter = false, gather = false;
+        const std::vector<std::uint32_t> made = mapsBy("automatic", scatter);
+        EXPECT_EQ(scatter, scattered) << resolution;
+        EXPECT_GT(setBits(made), 0u);
+        EXPECT_EQ(made, mapsBy("gather", gather)) << resolution;
+    }
 }
 
 std::vector<glm::vec3> candidatesOf(const Maps& maps) {
