@@ -87,7 +87,10 @@ Json planJson(const Graph& graph, const Scene& scene, const Plan& plan, const Ca
                              {"bytes", resource.desc.totalBytes()},
                              {"transient", resource.transient},
                              {"history", resource.history},
-                             {"object", resource.object}});
+                             {"object", resource.object},
+                             {"offset", resource.offset},
+                             {"first_step", resource.firstStep},
+                             {"last_step", resource.lastStep}});
     for (const LeftOut& item : plan.leftOut) leftOut.push_back({{"what", item.what}, {"why", item.why}});
     return {{"graph", graph.name},
             {"scene", scene.name},

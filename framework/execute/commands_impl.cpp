@@ -109,7 +109,7 @@ void StepCommands::dispatchIndirect(std::string_view port, std::uint64_t offset)
         fail(fmt::format("an indirect dispatch at byte {} of '{}', which has {}", offset, port,
                          counts.bytes()));
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, counts.name());
-    glDispatchComputeIndirect(static_cast<GLintptr>(offset));
+    glDispatchComputeIndirect(static_cast<GLintptr>(counts.offset() + offset));
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
 }
 

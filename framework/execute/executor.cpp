@@ -208,11 +208,10 @@ void Executor::bindSlot(const PlanBinding& binding, const gl::Program::Slot& slo
         break;
     }
     case gl::Program::Slot::Kind::UniformBlock:
-        glBindBufferBase(GL_UNIFORM_BUFFER, slot.unit, resources_.buffer(resource, binding.previous).name());
+        resources_.buffer(resource, binding.previous).bind(GL_UNIFORM_BUFFER, slot.unit);
         break;
     case gl::Program::Slot::Kind::StorageBlock:
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, slot.unit,
-                         resources_.buffer(resource, binding.previous).name());
+        resources_.buffer(resource, binding.previous).bind(GL_SHADER_STORAGE_BUFFER, slot.unit);
         break;
     }
 }

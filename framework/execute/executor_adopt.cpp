@@ -52,10 +52,12 @@ void Executor::keepStates(const Plan& next, const Programs& programs, const Stat
 
         const auto before = kept_.find(pass.name);
         if (before == kept_.end()) continue; // new: pending for all causes
+        // What every frame makes anew is missed only by the rest of a frame that has begun.
         bool contentKept = true;
         for (const auto& [port, resource] : pass.ports)
             if (resource >= 0 && resources_.info(resource).port.pass == pass.name)
-                contentKept = contentKept && resources_.kept(resource);
+                contentKept = contentKept && (resources_.kept(resource) ||
+                                              (!unfinished_ && resources_.info(resource).transient));
         if (!contentKept) continue;
         const bool same = before->second.signature == now.signature && before->second.state == now.state;
         const PassState& last = old[pass.name];

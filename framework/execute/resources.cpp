@@ -43,7 +43,7 @@ std::vector<Resources::Object> Resources::wantedObjects(const Plan& plan) {
     for (const PlanResource& resource : plan.resources) {
         if (resource.object < 0) continue;
         const auto first = static_cast<size_t>(resource.object);
-        objects.at(first).content.push_back(resource.port.text());
+        objects.at(first).content.push_back(fmt::format("{} at {}", resource.port.text(), resource.offset));
         if (resource.history) objects.at(first + 1).content.push_back(resource.port.text() + " (previous)");
     }
     for (Object& object : objects) std::ranges::sort(object.content);
@@ -89,23 +89,31 @@ void Resources::adopt(const Plan& plan, const Capabilities& capabilities) {
 
     std::vector<Entry> entries;
     for (const PlanResource& resource : plan.resources) {
-        Entry entry{.plan = resource, .flipped = false, .kept = false};
-        if (resource.object >= 0) {
-            const auto first = static_cast<size_t>(resource.object);
-            entry.kept = kept[first] && (!resource.history || kept[first + 1]);
-            for (const Entry& old : entries_)
-                if (entry.kept && old.plan.port == resource.port) entry.flipped = old.flipped;
-            // A constant may have another value under the new plan.
-            if (!entry.kept || resource.constant) {
-                const glm::vec4 value = resource.constant.value_or(resource.clear.value_or(glm::vec4(0)));
-                fill(objects[first], value);
-                if (resource.history) fill(objects[first + 1], value);
-            }
-        }
-        entries.push_back(std::move(entry));
+        Entry& entry = entries.emplace_back();
+        entry.plan = resource;
+        if (resource.object < 0) continue;
+        const auto first = static_cast<size_t>(resource.object);
+        entry.kept = kept[first] && (!resource.history || kept[first + 1]);
+        for (const Entry& old : entries_)
+            if (entry.kept && old.plan.port == resource.port) entry.flipped = old.flipped;
+        const bool whole = objects[first].desc.bytes == resource.desc.bytes;
+        if (resource.desc.kind == ResourceKind::Buffer && !whole)
+            entry.range = objects[first].buffer.range(resource.offset, resource.desc.bytes);
     }
     entries_ = std::move(entries);
     objects_ = std::move(objects);
+    fillNew();
+}
+
+void Resources::fillNew() {
+    for (int i = 0; i < static_cast<int>(entries_.size()); ++i) {
+        const auto& [plan, flipped, kept, range] = entries_[static_cast<size_t>(i)];
+        // A constant may have another value under the new plan.
+        if (plan.object < 0 || (kept && !plan.constant)) continue;
+        const glm::vec4 value = plan.constant.value_or(plan.clear.value_or(glm::vec4(0)));
+        fill(i, false, value);
+        if (plan.history) fill(i, true, value);
+    }
 }
 
 bool Resources::isBuffer(int resource) const { return info(resource).desc.kind == ResourceKind::Buffer; }
@@ -125,7 +133,8 @@ gl::Texture& Resources::texture(int resource, bool previous) {
 
 gl::Buffer& Resources::buffer(int resource, bool previous) {
     KESTREL_CHECK(isBuffer(resource));
-    return object(resource, previous).buffer;
+    Entry& entry = entries_.at(static_cast<size_t>(resource));
+    return entry.range ? entry.range : object(resource, previous).buffer;
 }
 
 void Resources::swapHistory(int resource) {
@@ -133,14 +142,14 @@ void Resources::swapHistory(int resource) {
     if (entry.plan.history) entry.flipped = !entry.flipped;
 }
 
-void Resources::fill(Object& object, const glm::vec4& value) {
-    if (object.desc.kind == ResourceKind::Buffer)
-        object.buffer.clear(clearWord(object.desc, value));
+void Resources::fill(int resource, bool previous, const glm::vec4& value) {
+    if (isBuffer(resource))
+        buffer(resource, previous).clear(clearWord(info(resource).desc, value));
     else
-        object.texture.clear(value);
+        texture(resource, previous).clear(value);
 }
 
-void Resources::fill(int resource, const glm::vec4& value) { fill(object(resource, false), value); }
+void Resources::fill(int resource, const glm::vec4& value) { fill(resource, false, value); }
 
 void Resources::copy(int from, int to) {
     if (isBuffer(from))

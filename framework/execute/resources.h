@@ -34,7 +34,7 @@ public:
 private:
     struct Object {
         Desc desc;
-        std::vector<std::string> content; // the ports that stand in it, sorted
+        std::vector<std::string> content; // the ports that stand in it and where, sorted
         gl::Texture texture;
         gl::Buffer buffer;
         bool taken = false; // by the next plan
@@ -43,11 +43,13 @@ private:
         PlanResource plan;
         bool flipped = false; // of a history: the second object is the current one
         bool kept = false;
+        gl::Buffer range; // of a buffer: its part of the object; none of a history
     };
     [[nodiscard]] Object& object(int resource, bool previous);
     [[nodiscard]] Object* takeOver(const Object& wanted, bool sameContent);
     static std::vector<Object> wantedObjects(const Plan& plan);
-    static void fill(Object& object, const glm::vec4& value);
+    void fill(int resource, bool previous, const glm::vec4& value);
+    void fillNew(); // what has not moved over
 
     std::vector<Entry> entries_;
     std::vector<Object> objects_;

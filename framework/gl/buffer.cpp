@@ -38,12 +38,31 @@ Buffer::Buffer(std::uint64_t bytes, const std::string& text)
     clear();
 }
 
+Buffer Buffer::range(std::uint64_t offset, std::uint64_t bytes) const {
+    KESTREL_CHECK_LE(offset, bytes_);
+    KESTREL_CHECK_LE(bytes, bytes_ - offset);
+    KESTREL_CHECK_LT(std::uint64_t{0}, bytes);
+    Buffer range;
+    range.rangeOf_ = name();
+    range.offset_ = offset_ + offset;
+    range.bytes_ = bytes;
+    return range;
+}
+
+void Buffer::bind(unsigned int target, unsigned int unit) const {
+    if (rangeOf_ == 0)
+        glBindBufferBase(target, unit, name());
+    else
+        glBindBufferRange(target, unit, name(), static_cast<GLintptr>(offset_),
+                          static_cast<GLsizeiptr>(bytes_));
+}
+
 void Buffer::upload(std::span<const std::byte> data, std::uint64_t offset) {
     KESTREL_CHECK_LE(offset, bytes_);
     KESTREL_CHECK_LE(data.size(), bytes_ - offset);
     if (data.empty()) return;
-    glNamedBufferSubData(name(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()),
-                         data.data());
+    glNamedBufferSubData(name(), static_cast<GLintptr>(offset_ + offset),
+                         static_cast<GLsizeiptr>(data.size()), data.data());
 }
 
 std::vector<std::byte> Buffer::download(std::uint64_t offset, std::uint64_t bytes) const {
@@ -53,13 +72,18 @@ std::vector<std::byte> Buffer::download(std::uint64_t offset, std::uint64_t byte
     std::vector<std::byte> result(count);
     if (count == 0) return result;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT); // shader writes before reading back
-    glGetNamedBufferSubData(name(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(count),
+    glGetNamedBufferSubData(name(), static_cast<GLintptr>(offset_ + offset), static_cast<GLsizeiptr>(count),
                             result.data());
     return result;
 }
 
 void Buffer::clear(std::uint32_t word) {
-    glClearNamedBufferData(name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+    if (rangeOf_ == 0)
+        glClearNamedBufferData(name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+    else
+        glClearNamedBufferSubData(name(), GL_R32UI, static_cast<GLintptr>(offset_),
+                                  static_cast<GLsizeiptr>(bytes_ / 4 * 4), GL_RED_INTEGER, GL_UNSIGNED_INT,
+                                  &word);
 }
 
 Name Buffer::texelView(Format format) const {
@@ -76,7 +100,11 @@ Name Buffer::texelView(Format format) const {
     Name view = 0;
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &view);
     views_.emplace_back(format, Handle<deleteTexture>(view));
-    glTextureBuffer(view, glFormat(format).internal, name());
+    if (rangeOf_ == 0)
+        glTextureBuffer(view, glFormat(format).internal, name());
+    else
+        glTextureBufferRange(view, glFormat(format).internal, name(), static_cast<GLintptr>(offset_),
+                             static_cast<GLsizeiptr>(bytes_));
     label(GL_TEXTURE, view, fmt::format("{} texels of buffer {}", info.name, name()));
     return view;
 }
@@ -84,7 +112,8 @@ Name Buffer::texelView(Format format) const {
 void copyResource(const Buffer& from, const Buffer& to) {
     KESTREL_CHECK_EQ(from.bytes(), to.bytes());
     if (from.bytes() == 0) return;
-    glCopyNamedBufferSubData(from.name(), to.name(), 0, 0, static_cast<GLsizeiptr>(from.bytes()));
+    glCopyNamedBufferSubData(from.name(), to.name(), static_cast<GLintptr>(from.offset()),
+                             static_cast<GLintptr>(to.offset()), static_cast<GLsizeiptr>(from.bytes()));
 }
 
 } // namespace kestrel::gl

@@ -51,21 +51,28 @@ public:
     Buffer() = default;
     // Throws MachineError with the size if there is not so much memory. Zero bytes are allowed.
     Buffer(std::uint64_t bytes, const std::string& label);
-    [[nodiscard]] Name name() const { return handle_.get(); }
+    // A range, which must lie inside and not outlive the buffer; everything below is meant of the range then.
+    // `offset` must be a multiple of what the device asks of bound ranges (256 always is).
+    [[nodiscard]] Buffer range(std::uint64_t offset, std::uint64_t bytes) const;
+    [[nodiscard]] Name name() const { return rangeOf_ != 0 ? rangeOf_ : handle_.get(); }
+    [[nodiscard]] std::uint64_t offset() const { return offset_; } // of the range in the object, else 0
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-    explicit operator bool() const { return bool(handle_); }
+    explicit operator bool() const { return name() != 0; }
+    // As a block: GL_SHADER_STORAGE_BUFFER or GL_UNIFORM_BUFFER.
+    void bind(unsigned int target, unsigned int unit) const;
     // The range must lie inside.
     void upload(std::span<const std::byte> data, std::uint64_t offset = 0);
     [[nodiscard]] std::vector<std::byte> download(std::uint64_t offset = 0,
                                                   std::uint64_t bytes = UINT64_MAX) const;
-    void clear(std::uint32_t word = 0); // every 32-bit word
+    void clear(std::uint32_t word = 0); // every whole 32-bit word
     // The buffer as a GL_TEXTURE_BUFFER of that texel format (made once a format): samplerBuffer,
     // imageBuffer. Throws MachineError if it holds more texels than the device can address.
     [[nodiscard]] Name texelView(Format format) const;
 
 private:
     Handle<deleteBuffer> handle_;
-    std::uint64_t bytes_ = 0;
+    Name rangeOf_ = 0; // of a range: the object, which it does not own
+    std::uint64_t offset_ = 0, bytes_ = 0;
     mutable std::vector<std::pair<Format, Handle<deleteTexture>>> views_;
 };
 

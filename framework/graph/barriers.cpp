@@ -1,6 +1,7 @@
 #include "graph/barriers.h"
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 
 namespace kestrel {
@@ -30,7 +31,7 @@ constexpr std::array<AccessRule, 9> rules = {{
 
 const AccessRule& ruleOf(Access access) { return rules.at(static_cast<size_t>(access)); }
 
-// What is pending on one object.
+// What is pending on one cell.
 struct Pending {
     bool written = false;             // by an incoherent write
     Barrier seenBy = Barrier::None;   // barriers that have stood since, whatever is skipped
@@ -41,62 +42,109 @@ struct Pending {
 };
 
 struct Touch {
-    size_t object;
+    size_t cell;
     Access access;
     bool write;
+};
+
+// The memory of all objects, cut into cells where a resource begins or ends: two resources meet where they
+// have a cell in common. A texture is one cell, a buffer as many as the ranges in it make. Both objects of a
+// history count as the first.
+class Cells {
+public:
+    explicit Cells(const Plan& plan)
+        : of_(plan.resources.size()) {
+        std::map<std::pair<int, std::uint64_t>, size_t> cells; // object and first byte -> number
+        for (const PlanResource& resource : plan.resources) {
+            if (resource.object < 0) continue;
+            cells[{resource.object, resource.offset}] = 0;
+            cells[{resource.object, endOf(resource)}] = 0;
+        }
+        for (auto& [begin, number] : cells) number = count_++;
+        for (size_t i = 0; i < of_.size(); ++i) {
+            const PlanResource& resource = plan.resources[i];
+            if (resource.object < 0) continue;
+            const auto end = cells.find({resource.object, endOf(resource)});
+            for (auto cell = cells.find({resource.object, resource.offset}); cell != end; ++cell)
+                of_[i].push_back(cell->second);
+        }
+    }
+    [[nodiscard]] const std::vector<size_t>& of(int resource) const {
+        return of_[static_cast<size_t>(resource)];
+    }
+    [[nodiscard]] size_t count() const { return count_; }
+
+private:
+    static std::uint64_t endOf(const PlanResource& resource) {
+        return resource.offset + std::max<std::uint64_t>(resource.desc.totalBytes(), 1);
+    }
+    std::vector<std::vector<size_t>> of_; // by resource
+    size_t count_ = 0;
 };
 
 class Planner {
 public:
     explicit Planner(Plan& plan)
         : plan_(plan)
-        , pending_(plan.objects.size())
-        , writers_(plan.objects.size()) {
+        , cells_(plan)
+        , pending_(cells_.count())
+        , writers_(cells_.count()) {
         for (const PlanStep& step : plan.steps)
             for (const PlanBinding& binding : step.bindings)
                 if (binding.write && isIncoherent(binding.access))
-                    writers_[objectOf(binding.resource)].insert(step.pass);
+                    for (const size_t cell : cells_.of(binding.resource)) writers_[cell].insert(step.pass);
     }
 
     void run() {
-        // The second round starts from the state in which the first one ends.
-        for (int round = 0; round < 2; ++round)
-            for (size_t i = 0; i < plan_.steps.size(); ++i) step(i);
+        // Each round starts from the state in which the one before ends, and holds once it sets the same
+        // barriers: a barrier that one round finds unneeded, as an earlier one does its work, may be what the
+        // next frame counted on. Rounds that do not settle only add from then on, and so must end.
+        constexpr int freeRounds = 4;
+        for (int round = 0;; ++round) {
+            const std::vector<Barrier> before = barriers();
+            for (size_t i = 0; i < plan_.steps.size(); ++i) step(i, round >= freeRounds);
+            if (round > 0 && barriers() == before) return;
+        }
     }
 
 private:
-    [[nodiscard]] size_t objectOf(int resource) const {
-        return static_cast<size_t>(plan_.resources[static_cast<size_t>(resource)].object);
-    }
-
-    // Everything that a step and the commands before it touch. Both objects of a history count as the first.
+    // Everything that a step and the commands before it touch.
     [[nodiscard]] std::vector<Touch> touchesOf(size_t index) const {
         const PlanStep& step = plan_.steps[index];
         const PlanPass& pass = plan_.passes[static_cast<size_t>(step.pass)];
         std::vector<Touch> touches;
+        const auto touch = [&](int resource, Access access, bool write) {
+            for (const size_t cell : cells_.of(resource)) touches.push_back({cell, access, write});
+        };
         for (const auto& [from, to] : step.copies) {
-            touches.push_back({objectOf(from), Access::Copy, false});
-            touches.push_back({objectOf(to), Access::Copy, true});
+            touch(from, Access::Copy, false);
+            touch(to, Access::Copy, true);
         }
         if (static_cast<int>(index) == pass.firstStep)
-            for (const PlanResource& resource : plan_.resources)
-                if (resource.clear && resource.port.pass == pass.name)
-                    touches.push_back({static_cast<size_t>(resource.object), Access::Copy, true});
+            for (size_t i = 0; i < plan_.resources.size(); ++i)
+                if (plan_.resources[i].clear && plan_.resources[i].port.pass == pass.name)
+                    touch(static_cast<int>(i), Access::Copy, true);
         for (const PlanBinding& binding : step.bindings)
-            touches.push_back({objectOf(binding.resource), binding.access, binding.write});
+            touch(binding.resource, binding.access, binding.write);
         return touches;
+    }
+
+    [[nodiscard]] std::vector<Barrier> barriers() const {
+        std::vector<Barrier> all;
+        for (const PlanStep& step : plan_.steps) all.push_back(step.barrier);
+        return all;
     }
 
     void enterPass() {
         for (Pending& pending : pending_) pending.seenHere = pending.heldBackHere = Barrier::None;
     }
 
-    void step(size_t index) {
+    void step(size_t index, bool keepsBarrier) {
         PlanStep& step = plan_.steps[index];
         const PlanPass& pass = plan_.passes[static_cast<size_t>(step.pass)];
         if (static_cast<int>(index) == pass.firstStep) enterPass();
         const std::vector<Touch> touches = touchesOf(index);
-        Barrier needed = Barrier::None;
+        Barrier needed = keepsBarrier ? step.barrier : Barrier::None;
         for (const Touch& touch : touches) needed |= neededFor(touch);
         step.barrier = needed;
         stand(needed, step.pass, touches);
@@ -104,7 +152,7 @@ private:
     }
 
     [[nodiscard]] Barrier neededFor(const Touch& touch) const {
-        const Pending& pending = pending_[touch.object];
+        const Pending& pending = pending_[touch.cell];
         const Barrier visible = ruleOf(touch.access).visible;
         Barrier needed = Barrier::None;
         if (pending.written && ((pending.seenBy | pending.seenHere) & visible) == Barrier::None)
@@ -127,18 +175,18 @@ private:
             pending.heldBack |= barrier;
         }
         for (const Touch& touch : touches)
-            if (!touch.write && followsWriters(pass, touch.object)) pending_[touch.object].seenBy |= barrier;
+            if (!touch.write && followsWriters(pass, touch.cell)) pending_[touch.cell].seenBy |= barrier;
     }
 
-    [[nodiscard]] bool followsWriters(int pass, size_t object) const {
+    [[nodiscard]] bool followsWriters(int pass, size_t cell) const {
         const std::vector<int>& inputs = plan_.passes[static_cast<size_t>(pass)].inputs;
-        return std::all_of(writers_[object].begin(), writers_[object].end(), [&](int writer) {
+        return std::all_of(writers_[cell].begin(), writers_[cell].end(), [&](int writer) {
             return writer == pass || std::find(inputs.begin(), inputs.end(), writer) != inputs.end();
         });
     }
 
     void note(const Touch& touch) {
-        Pending& pending = pending_[touch.object];
+        Pending& pending = pending_[touch.cell];
         if (touch.write && isIncoherent(touch.access)) {
             pending.written = true;
             pending.seenBy = pending.seenHere = Barrier::None;
@@ -150,8 +198,9 @@ private:
     }
 
     Plan& plan_;
+    Cells cells_;
     std::vector<Pending> pending_;
-    std::vector<std::set<int>> writers_; // passes that write an object incoherently
+    std::vector<std::set<int>> writers_; // passes that write a cell incoherently
 };
 
 } // namespace

@@ -11,7 +11,7 @@ Barrier barrierFor(Access access);
 // and storage block writes (and atomics) are; attachments, copies, clears and uploads are ordered by OpenGL.
 bool isIncoherent(Access access);
 
-// What must stand between `first` and `second`, two accesses of the same object in different steps.
+// What must stand between `first` and `second`, two accesses of the same memory in different steps.
 Barrier barrierBetween(Access first, bool firstWrites, Access second, bool secondWrites);
 
 // Fills PlanStep::barrier from the bindings, copies and clears. The frame is taken as a circle: the first

@@ -51,7 +51,7 @@ Plan compile(const Graph& graph, const Registry& registry, const PassSet& passes
     // Transient resources with disjoint lifetimes share memory.
     assignObjects(plan, options.shareMemory);
 
-    // Barriers, by object: sharing moves hazards from one resource to another.
+    // Barriers, by what shares bytes: sharing moves hazards from one resource to another.
     planBarriers(plan);
 
     plan.leftOut = reportLeftOut(network);

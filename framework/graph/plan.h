@@ -31,10 +31,11 @@ struct PlanResource {
     bool transient = false; // made and read in every frame, so it may share an object with another lifetime
     bool history = false; // somebody reads last frame's content: two objects that swap when the producer runs
     int object = -1;      // index into Plan::objects (of a history: the first of two)
+    std::uint64_t offset = 0; // of a buffer: its first byte in the object, a multiple of rangeAlignment
     int firstStep = 0, lastStep = 0; // lifetime within a frame; whole frame if not transient
 };
 
-// A physical texture or buffer.
+// A physical texture or buffer. A buffer may be larger than what lies in it at any time.
 struct PlanObject {
     Desc desc;
     std::string label; // ports that share it, for debuggers

@@ -37,7 +37,8 @@ std::string resourceUseText(const PlanResource& resource) {
     if (resource.constant) return "constant";
     if (resource.history) return "two, for the last frame's content";
     if (!resource.transient) return "persistent";
-    return fmt::format("steps {} to {}", resource.firstStep, resource.lastStep);
+    const std::string steps = fmt::format("steps {} to {}", resource.firstStep, resource.lastStep);
+    return resource.offset == 0 ? steps : fmt::format("{}, from byte {}", steps, resource.offset);
 }
 
 Out moduleJson(const ModuleInstance& instance) {
@@ -94,9 +95,9 @@ std::string planText(const Plan& plan) {
             if (resource.object == static_cast<int>(i))
                 text += fmt::format("    {}: {}\n", resource.port.text(), resourceUseText(resource));
     }
-    text +=
-        fmt::format("  transient {}, without sharing {}; persistent {}\n", exactBytesText(plan.memory.transient),
-                    exactBytesText(plan.memory.unshared), exactBytesText(plan.memory.persistent));
+    text += fmt::format("  transient {}, without sharing {}; persistent {}\n",
+                        exactBytesText(plan.memory.transient), exactBytesText(plan.memory.unshared),
+                        exactBytesText(plan.memory.persistent));
 
     text += "Left out:\n";
     if (plan.leftOut.empty()) text += "  nothing\n";
@@ -128,6 +129,7 @@ std::string planJson(const Plan& plan) {
                                      {"constant", resource.constant.has_value()},
                                      {"history", resource.history},
                                      {"object", resource.object},
+                                     {"offset", resource.offset},
                                      {"first_step", resource.firstStep},
                                      {"last_step", resource.lastStep}});
     json["objects"] = Out::array();

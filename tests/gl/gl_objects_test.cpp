@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "gl_fixture.h"
+#include "graph/memory.h"
 #include <gmock/gmock.h>
 #include <limits>
 #include <numeric>
@@ -142,6 +143,44 @@ TEST_F(ObjectsTest, BuffersHoldBytesAndAreZeroAtFirst) {
     EXPECT_TRUE(hollow.download().empty());
     EXPECT_EQ(buffer.texelView(Format::R32UI), buffer.texelView(Format::R32UI));
     EXPECT_NE(buffer.texelView(Format::R32UI), buffer.texelView(Format::R32F));
+}
+
+TEST_F(ObjectsTest, ARangeIsABufferOfItsOwn) {
+    gl::Buffer whole(1024, "whole");
+    {
+        gl::Buffer range = whole.range(256, 260);
+        EXPECT_EQ(range.name(), whole.name());
+        EXPECT_EQ(range.offset(), 256U);
+        EXPECT_EQ(range.bytes(), 260U);
+        range.clear(7);
+        const std::vector<std::uint32_t> words = {1, 2};
+        range.upload(std::as_bytes(std::span(words)), 4);
+        EXPECT_EQ(as<std::uint32_t>(range.download(0, 16)), (std::vector<std::uint32_t>{7, 1, 2, 7}));
+        gl::Buffer copy(260, "copy");
+        gl::copyResource(range, copy);
+        EXPECT_EQ(copy.download(), range.download());
+        gl::copyResource(copy, whole.range(512, 260));
+        EXPECT_EQ(whole.range(512, 260).download(), copy.download());
+        GLint texels = 0;
+        glGetTextureLevelParameteriv(range.texelView(Format::R32UI), 0, GL_TEXTURE_WIDTH, &texels);
+        EXPECT_EQ(texels, 65);
+    }
+    std::vector<std::uint32_t> expected(256, 0);
+    for (size_t i = 0; i < 65; ++i) expected[64 + i] = expected[128 + i] = 7;
+    expected[65] = expected[129] = 1;
+    expected[66] = expected[130] = 2;
+    EXPECT_EQ(as<std::uint32_t>(whole.download()), expected)
+        << "outside nothing changes, and it outlives them";
+}
+
+TEST_F(ObjectsTest, RangesMayBeginAtEveryMultipleOf256) {
+    for (const GLenum what : {GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT,
+                              GL_TEXTURE_BUFFER_OFFSET_ALIGNMENT}) {
+        GLint alignment = 0;
+        glGetIntegerv(what, &alignment);
+        ASSERT_GT(alignment, 0);
+        EXPECT_EQ(rangeAlignment % static_cast<std::uint64_t>(alignment), 0U);
+    }
 }
 
 TEST_F(ObjectsTest, TexturesAreCopiedWithAllTheirLevels) {

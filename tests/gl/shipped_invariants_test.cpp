@@ -62,6 +62,29 @@ TEST_F(Invariants, SharingMemoryChangesNoBit) {
     for (const Case& test : cases) expectEqual(test, {}, unshared, 0, 0);
 }
 
+TEST_F(Invariants, SharingSavesThirtyPercentOfTheLargestGraph) {
+    const Graph graph = shippedGraph("full");
+    std::map<bool, Image> images;
+    std::map<bool, MemoryReport> memory;
+    for (const bool share : {true, false}) {
+        RenderOptions options;
+        options.shareMemory = share;
+        Renderer made = renderer(graph, loadScene("builtin:hall?detail=0.1"), options);
+        for (int i = 0; i < 3; ++i) made.frame();
+        images[share] = made.read({"tone", "image"});
+        memory[share] = made.plan().memory;
+    }
+    EXPECT_EQ(images[true], images[false]);
+    EXPECT_EQ(memory[true].unshared, memory[false].transient);
+    EXPECT_EQ(memory[false].unshared, memory[false].transient);
+    EXPECT_LT(memory[true].transient, memory[true].unshared);
+    // At the size that the command line takes. Frames of a test are small beside maps of fixed size.
+    Renderer made = renderer(graph, loadScene("builtin:hall?detail=0.1"));
+    made.setSize({640, 360, 1});
+    const MemoryReport& report = made.plan().memory;
+    EXPECT_LE(static_cast<double>(report.transient), 0.7 * static_cast<double>(report.unshared));
+}
+
 TEST_F(Invariants, RunningAgainChangesNoBit) {
     for (const Case& test : cases) expectEqual(test, {}, {}, 0, 0);
 }

@@ -4,6 +4,8 @@
 #include "graph_mock.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <numeric>
+#include <random>
 
 namespace kestrel {
 namespace {
@@ -142,6 +144,20 @@ TEST(Barriers, TheFrameIsACircle) {
                 ElementsAre("TextureFetch", "ShaderStorage"));
 }
 
+TEST(Barriers, RangesOfOneBufferMeetOnlyWhereTheyOverlap) {
+    Plan plan =
+        planOf({{{0, Access::Image, true}}, {{1, Access::Fetch, false}}, {{0, Access::Fetch, false}}}, 2);
+    plan.objects = {{Desc::buffer(1024), ""}};
+    for (PlanResource& resource : plan.resources) {
+        resource.desc = Desc::buffer(512);
+        resource.object = 0;
+    }
+    plan.resources[1].offset = 256;
+    EXPECT_THAT(barriersOf(plan), ElementsAre("ShaderImage", "TextureFetch", "none"));
+    plan.resources[1].offset = 512;
+    EXPECT_THAT(barriersOf(plan), ElementsAre("ShaderImage", "none", "TextureFetch"));
+}
+
 // ---- memory
 
 Declare chainLink(std::uint32_t side, bool scratch) {
@@ -212,6 +228,144 @@ TEST(Memory, WhatMayBeSkippedSharesNothing) {
                     registry);
     EXPECT_EQ(plan.memory.transient, 0u);
     EXPECT_EQ(plan.memory.persistent, 3u * 16 * 16 * 8 + 64 * 64 * 8);
+}
+
+// A chain of buffers: pass i writes one of so many bytes and reads that of the pass before.
+Registry bufferRegistry(const std::vector<std::uint64_t>& sizes) {
+    Registry registry;
+    for (size_t i = 0; i < sizes.size(); ++i)
+        registry.add(mockType("B" + std::to_string(i),
+                              {opt("x", PortKind::Buffer), out("r", PortKind::Buffer)},
+                              [bytes = sizes[i]](const World&, const Inputs& in, const Demand&) {
+                                  Declaration d;
+                                  d.depends = Causes::Frame;
+                                  d.outputs = {output("r", Desc::buffer(bytes))};
+                                  d.steps = {step("s", {writes("r", Access::Storage)})};
+                                  if (in.connected("x"))
+                                      d.steps[0].uses.push_back(reads("x", Access::Storage));
+                                  return d;
+                              }));
+    return registry;
+}
+// Each step reads what the one before made, so two neighbours live at a time.
+constexpr const char* bufferChain = R"({"kestrel": 1, "passes": {
+    "a": {"type": "B0"}, "b": {"type": "B1"}, "c": {"type": "B2"}, "d": {"type": "B3"}, "e": {"type": "B4"}},
+    "edges": [["a.r", "b.x"], ["b.r", "c.x"], ["c.r", "d.x"], ["d.r", "e.x"]], "outputs": ["e.r"]})";
+
+TEST(Memory, BuffersOfDifferentSizesShareByRanges) {
+    // a [0,1] and b [1,2] meet, b and c [2,3], c and d [3,4]: the peak is a and b. e is an output.
+    const Plan plan = compileText(bufferChain, bufferRegistry({1024, 3072, 768, 2048, 5000}));
+    EXPECT_EQ(plan.memory.unshared, 1024u + 3072 + 768 + 2048);
+    EXPECT_EQ(plan.memory.transient, 1024u + 3072);
+    EXPECT_EQ(plan.memory.persistent, 5000u);
+    ASSERT_EQ(plan.objects.size(), 2u);
+    EXPECT_EQ(plan.objects[0].label, "a.r, b.r, c.r, d.r");
+    EXPECT_EQ(plan.objects[0].desc, Desc::buffer(4096));
+    EXPECT_EQ(resourceAt(plan, "b.r")->offset, 0u);
+    EXPECT_EQ(resourceAt(plan, "d.r")->offset, 0u);
+    EXPECT_EQ(resourceAt(plan, "a.r")->offset, 3072u);
+    EXPECT_EQ(resourceAt(plan, "c.r")->offset, 3072u);
+    // The barrier before each reader also holds back the store into a place that was read a step ago.
+    EXPECT_THAT(barriersOf(plan),
+                ElementsAre("none", "ShaderStorage", "ShaderStorage", "ShaderStorage", "ShaderStorage"));
+}
+
+TEST(Memory, BuffersStayAloneWhereRangesSaveNothing) {
+    // Less than the alignment is no gain, and equal sizes share as textures do.
+    Plan plan = compileText(bufferChain, bufferRegistry({200, 100, 200, 255, 64}));
+    EXPECT_EQ(plan.memory.transient, 200u + 100 + 255);
+    EXPECT_EQ(plan.memory.unshared, 200u + 100 + 200 + 255);
+    for (const PlanResource& resource : plan.resources) EXPECT_EQ(resource.offset, 0u);
+    CompileOptions options;
+    options.shareMemory = false;
+    plan = compileText(bufferChain, bufferRegistry({1000, 3000, 700, 2000, 4096}), options);
+    EXPECT_EQ(plan.memory.transient, plan.memory.unshared);
+    EXPECT_EQ(plan.objects.size(), plan.resources.size());
+}
+
+void expectPacked(const std::vector<Lifetime>& lifetimes, const Packing& packing) {
+    ASSERT_EQ(packing.offsets.size(), lifetimes.size());
+    std::uint64_t end = 0;
+    for (size_t i = 0; i < lifetimes.size(); ++i) {
+        EXPECT_EQ(packing.offsets[i] % rangeAlignment, 0u);
+        end = std::max(end, packing.offsets[i] + lifetimes[i].bytes);
+        for (size_t j = 0; j < i; ++j) {
+            const bool together =
+                lifetimes[i].first <= lifetimes[j].last && lifetimes[j].first <= lifetimes[i].last;
+            const bool apart = packing.offsets[i] + lifetimes[i].bytes <= packing.offsets[j] ||
+                               packing.offsets[j] + lifetimes[j].bytes <= packing.offsets[i];
+            EXPECT_TRUE(!together || apart) << i << " and " << j;
+        }
+    }
+    EXPECT_EQ(packing.bytes, end);
+    EXPECT_GE(packing.bytes, peakBytes(lifetimes));
+}
+
+// The fewest bytes: in some order of placing, the lowest gap for each is optimal (take an optimal packing by
+// offset; each moves down at most).
+std::uint64_t fewestBytes(const std::vector<Lifetime>& lifetimes) {
+    std::vector<size_t> order(lifetimes.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::uint64_t fewest = UINT64_MAX;
+    do {
+        std::vector<std::uint64_t> offsets(lifetimes.size());
+        std::uint64_t end = 0;
+        for (size_t i = 0; i < order.size(); ++i) {
+            const Lifetime& one = lifetimes[order[i]];
+            std::uint64_t& offset = offsets[order[i]];
+            for (bool moved = true; moved;) {
+                moved = false;
+                for (size_t j = 0; j < i; ++j) {
+                    const Lifetime& other = lifetimes[order[j]];
+                    const std::uint64_t begin = offsets[order[j]];
+                    if (one.first > other.last || other.first > one.last) continue;
+                    if (offset + one.bytes <= begin || begin + other.bytes <= offset) continue;
+                    offset = begin + other.bytes;
+                    moved = true;
+                }
+            }
+            end = std::max(end, offset + one.bytes);
+        }
+        fewest = std::min(fewest, end);
+    } while (std::next_permutation(order.begin(), order.end()));
+    return fewest;
+}
+
+TEST(Packing, IsValidAndNearlyTheFewestBytes) {
+    std::mt19937 random(1);
+    const auto below = [&](std::uint32_t n) { return static_cast<int>(random() % n); };
+    int optimal = 0;
+    constexpr int trials = 300;
+    for (int trial = 0; trial < trials && !testing::Test::HasFailure(); ++trial) {
+        SCOPED_TRACE(trial);
+        std::vector<Lifetime> lifetimes(static_cast<size_t>(2 + below(5)));
+        for (Lifetime& one : lifetimes) {
+            one.first = below(8);
+            one.last = one.first + below(5);
+            one.bytes = rangeAlignment * static_cast<std::uint64_t>(1 + below(8));
+        }
+        const Packing packing = packLifetimes(lifetimes);
+        expectPacked(lifetimes, packing);
+        const std::uint64_t fewest = fewestBytes(lifetimes);
+        EXPECT_GE(packing.bytes, fewest);
+        EXPECT_LE(packing.bytes, fewest + fewest / 3);
+        optimal += packing.bytes == fewest ? 1 : 0;
+    }
+    EXPECT_GE(optimal, trials * 9 / 10);
+    EXPECT_EQ(packLifetimes({}).bytes, 0u);
+}
+
+TEST(Packing, ManyOfAnySizeAreValid) {
+    std::mt19937 random(2);
+    for (int trial = 0; trial < 50; ++trial) {
+        std::vector<Lifetime> lifetimes(60);
+        for (Lifetime& one : lifetimes) {
+            one.first = static_cast<int>(random() % 40);
+            one.last = one.first + static_cast<int>(random() % 10);
+            one.bytes = 1 + random() % 5000;
+        }
+        expectPacked(lifetimes, packLifetimes(lifetimes));
+    }
 }
 
 TEST(Memory, StorageIsEqualButForTheView) {

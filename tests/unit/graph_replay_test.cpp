@@ -1,6 +1,7 @@
 // The property that a plan must have: on shared objects, with passes that are skipped when nothing changed,
 // every reader sees what its producer makes, and no access lacks a barrier. Random graphs are replayed on a
-// toy device whose objects hold one number each, and compared with an interpreter that knows the graph only.
+// toy device whose textures and buffer places hold one number each, and compared with an interpreter that
+// knows the graph only.
 #include "graph/barriers.h"
 #include "graph_mock.h"
 #include <gtest/gtest.h>
@@ -24,10 +25,10 @@ Token hashOf(const std::string& text) { return std::hash<std::string>()(text); }
 struct Behaviour {
     Causes depends = Causes::None;
     std::map<std::string, PortRef> feeds;
-    std::uint32_t side = 8;
+    Desc desc, scratch; // of its outputs and of its scratch
     bool twoSteps = false, clears = false, history = false, sameOut1 = false, constantOut1 = false;
     bool providesModule = false;
-    Access writeAccess = Access::Image;
+    Access writeAccess = Access::Image, scratchWrites = Access::Image;
     Access readAccess = Access::Fetch;
     [[nodiscard]] bool fed(const std::string& port) const { return feeds.contains(port); }
 };
@@ -39,17 +40,17 @@ Declaration declareRandom(const Behaviour& how, const Inputs& in, const Demand& 
     Declaration d;
     d.depends = how.depends;
     d.always = how.history;
-    const Desc desc = image(how.side);
+    const Desc& desc = how.desc;
     const bool needsScratch = how.twoSteps || (how.providesModule && demand.reads("tracer"));
     Step last = step("last", {});
     for (const std::string& port : textureInputs)
         if (in.connected(port)) last.uses.push_back(reads(port, how.readAccess));
     if (in.connected("m")) last.modules.push_back({"m", takes::AnyHit});
     if (needsScratch) {
-        Output scratch = output("scratch", desc);
+        Output scratch = output("scratch", how.scratch);
         if (how.clears) scratch.clear = clearValue;
         d.outputs.push_back(scratch);
-        Step first = step("first", {writes("scratch", how.writeAccess)});
+        Step first = step("first", {writes("scratch", how.scratchWrites)});
         if (in.connected("in0")) first.uses.push_back(reads("in0"));
         d.steps.push_back(first);
         last.uses.push_back(reads("scratch"));
@@ -112,20 +113,32 @@ RandomGraph makeGraph(std::uint32_t seed) {
     RandomGraph made;
     const std::uint32_t count = 3 + below(12);
     for (std::uint32_t i = 0; i < count; ++i) made.names.push_back("p" + std::to_string(i));
+    // Ports are textures in one half of the graphs and buffers in the other; scratch is either.
+    const bool buffers = below(2) == 0;
+    const auto anyDesc = [&](bool buffer) {
+        return buffer ? Desc::buffer(256 * (1 + below(6)), Format::R32UI) : image(below(4) == 0 ? 16 : 8);
+    };
+    const auto anyWrite = [&](bool buffer) {
+        constexpr std::array writeKinds = {Access::Image, Access::Copy, Access::Attachment};
+        const Access access = writeKinds[below(3)];
+        return buffer && access == Access::Attachment ? Access::Storage : access;
+    };
     std::vector<PortRef> images, tracers;
     for (const std::string& name : made.names) {
         Behaviour how;
         constexpr std::array causes = {Causes::Frame, Causes::Frame, Causes::None, Causes::Lights};
         how.depends = causes[below(4)];
-        how.side = below(4) == 0 ? 16 : 8;
+        const bool scratchIsBuffer = below(2) == 0;
+        how.desc = anyDesc(buffers);
+        how.scratch = anyDesc(scratchIsBuffer);
+        how.writeAccess = anyWrite(buffers);
+        how.scratchWrites = anyWrite(scratchIsBuffer);
         how.twoSteps = below(3) == 0;
         how.clears = below(2) == 0;
         how.history = below(6) == 0;
         how.sameOut1 = below(4) == 0;
         how.constantOut1 = below(4) == 0;
         how.providesModule = below(4) == 0;
-        constexpr std::array writeKinds = {Access::Image, Access::Attachment, Access::Copy};
-        how.writeAccess = writeKinds[below(3)];
         how.readAccess = below(2) == 0 ? Access::Fetch : Access::Image;
         for (const std::string& port : textureInputs)
             if (!images.empty() && below(2) == 0)
@@ -151,13 +164,17 @@ RandomGraph makeGraph(std::uint32_t seed) {
     std::shuffle(listed.begin(), listed.end(), random);
     for (const std::string& name : listed) {
         const Behaviour& how = made.passes.at(name);
-        made.registry.add(mockType("T" + name,
-                                   {opt("in0"), opt("in1"), opt("in2"), opt("base"),
-                                    opt("m", PortKind::Tracer), out("out0"), out("out1"), out("updated"),
-                                    internal("scratch"), out("tracer", PortKind::Tracer)},
-                                   [how](const World&, const Inputs& in, const Demand& demand) {
-                                       return declareRandom(how, in, demand);
-                                   }));
+        const PortKind kind = buffers ? PortKind::Buffer : PortKind::Texture;
+        const PortKind scratch =
+            how.scratch.kind == ResourceKind::Buffer ? PortKind::Buffer : PortKind::Texture;
+        made.registry.add(
+            mockType("T" + name,
+                     {opt("in0", kind), opt("in1", kind), opt("in2", kind), opt("base", kind),
+                      opt("m", PortKind::Tracer), out("out0", kind), out("out1", kind), out("updated", kind),
+                      internal("scratch", scratch), out("tracer", PortKind::Tracer)},
+                     [how](const World&, const Inputs& in, const Demand& demand) {
+                         return declareRandom(how, in, demand);
+                     }));
         GraphPass pass;
         pass.name = name;
         pass.type = "T" + name;
@@ -241,12 +258,9 @@ public:
         : plan_(plan)
         , graph_(graph)
         , expected_(expected)
-        , content_(plan.objects.size(), 0)
-        , lastWrite_(plan.objects.size(), 0)
-        , lastAccess_(plan.objects.size(), 0)
         , swapped_(plan.resources.size(), false) {
-        for (const PlanResource& resource : plan.resources)
-            if (resource.constant) content_[static_cast<size_t>(resource.object)] = 3;
+        for (size_t i = 0; i < plan.resources.size(); ++i)
+            if (plan.resources[i].constant) store(blocks(static_cast<int>(i), false), 3);
     }
 
     void frame(Causes causes, Token frame, Token lights) {
@@ -263,18 +277,42 @@ public:
             run(pass, frame, lights);
         }
         for (const PlanOutput& output : plan_.outputs)
-            EXPECT_EQ(content_[object(output.resource, false)],
-                      expected_.at(output.port.pass, output.port.port))
+            EXPECT_TRUE(
+                holds(blocks(output.resource, false), expected_.at(output.port.pass, output.port.port)))
                 << output.port.text();
     }
 
     int mistakes = 0;
 
 private:
-    [[nodiscard]] size_t object(int index, bool previous) const {
+    // A texture is one block, a buffer one for every 256 bytes.
+    struct Block {
+        Token content = 0;
+        std::uint64_t lastWrite = 0, lastAccess = 0; // on the clock
+        int object = 0;
+    };
+    using Blocks = std::vector<Block*>;
+    [[nodiscard]] Blocks blocks(int index, bool previous) {
         const PlanResource& resource = plan_.resources[static_cast<size_t>(index)];
         const bool second = resource.history && (previous != swapped_[static_cast<size_t>(index)]);
-        return static_cast<size_t>(resource.object) + (second ? 1 : 0);
+        const int object = resource.object + (second ? 1 : 0);
+        const bool buffer = resource.desc.kind == ResourceKind::Buffer;
+        const std::uint64_t first = resource.offset / 256, count = buffer ? resource.desc.bytes / 256 : 1;
+        EXPECT_LE(resource.offset + resource.desc.totalBytes(),
+                  plan_.objects[static_cast<size_t>(object)].desc.totalBytes());
+        Blocks found;
+        for (std::uint64_t i = first; i < first + count; ++i) {
+            found.push_back(&blocks_[{object, i}]);
+            found.back()->object = object;
+        }
+        return found;
+    }
+    static void store(const Blocks& blocks, Token content) {
+        for (Block* block : blocks) block->content = content;
+    }
+    [[nodiscard]] static bool holds(const Blocks& blocks, Token content) {
+        return std::all_of(blocks.begin(), blocks.end(),
+                           [&](const Block* block) { return block->content == content; });
     }
 
     void run(const PlanPass& pass, Token frame, Token lights) {
@@ -289,37 +327,40 @@ private:
         for (std::uint32_t bit = 0; bit < 8; ++bit)
             if ((static_cast<std::uint32_t>(step.barrier) & (1U << bit)) != 0) barrierAt_[bit] = ++clock_;
         for (const auto& [from, to] : step.copies) {
-            access(object(from, false), Access::Copy, false);
-            access(object(to, false), Access::Copy, true);
-            content_[object(to, false)] = content_[object(from, false)];
+            access(blocks(from, false), Access::Copy, false);
+            access(blocks(to, false), Access::Copy, true);
+            const Blocks source = blocks(from, false), target = blocks(to, false);
+            ASSERT_EQ(source.size(), target.size());
+            for (size_t i = 0; i < source.size(); ++i) target[i]->content = source[i]->content;
         }
         if (index == pass.firstStep)
             for (size_t i = 0; i < plan_.resources.size(); ++i)
                 if (plan_.resources[i].clear && plan_.resources[i].port.pass == pass.name) {
-                    access(object(static_cast<int>(i), false), Access::Copy, true);
-                    content_[object(static_cast<int>(i), false)] = 7;
+                    const Blocks cleared = blocks(static_cast<int>(i), false);
+                    access(cleared, Access::Copy, true);
+                    store(cleared, 7);
                 }
         const Behaviour& how = graph_.passes.at(pass.name);
         Token sum = how.depends == Causes::Frame ? frame : how.depends == Causes::Lights ? lights : 0;
         for (const PlanBinding& binding : step.bindings) {
-            const size_t at = object(binding.resource, binding.previous);
+            const Blocks at = blocks(binding.resource, binding.previous);
             access(at, binding.access, binding.write);
             if (binding.write) continue;
             const Token wanted = binding.previous ? expected_.previousAt(pass.name, binding.port)
                                                   : expected_.through(pass.name, binding.name);
-            if (content_[at] != wanted) {
+            if (!holds(at, wanted)) {
                 ++mistakes;
                 ADD_FAILURE() << "frame " << frame << ": " << pass.name << " reads the wrong content by '"
                               << binding.name << "'";
             }
-            sum += content_[at];
+            sum += at[0]->content;
         }
         for (const PlanBinding& binding : step.bindings) {
             if (!binding.write) continue;
-            Token& content = content_[object(binding.resource, false)];
             // An update depends on what is there; everything else is written wholly.
-            content = mix(sum + (binding.port == "updated" ? content : 0),
-                          hashOf(pass.name + step.step.name + binding.port));
+            for (Block* block : blocks(binding.resource, false))
+                block->content = mix(sum + (binding.port == "updated" ? block->content : 0),
+                                     hashOf(pass.name + step.step.name + binding.port));
         }
     }
 
@@ -329,26 +370,28 @@ private:
         return 0;
     }
 
-    void access(size_t at, Access access, bool write) {
+    void access(const Blocks& at, Access kind, bool write) {
+        for (Block* block : at) access(*block, kind, write);
+    }
+    void access(Block& block, Access access, bool write) {
         const bool incoherent = write && isIncoherent(access);
-        if (lastWrite_[at] > 0 && lastBarrier(access) < lastWrite_[at]) {
+        const std::string& label = plan_.objects[static_cast<size_t>(block.object)].label;
+        if (block.lastWrite > 0 && lastBarrier(access) < block.lastWrite) {
             ++mistakes;
-            ADD_FAILURE() << "no " << accessName(access) << " barrier since a shader wrote "
-                          << plan_.objects[at].label;
+            ADD_FAILURE() << "no " << accessName(access) << " barrier since a shader wrote " << label;
         }
-        if (incoherent && lastAccess_[at] > 0 && lastBarrier(access) < lastAccess_[at]) {
+        if (incoherent && block.lastAccess > 0 && lastBarrier(access) < block.lastAccess) {
             ++mistakes;
-            ADD_FAILURE() << "a store overtakes an access of " << plan_.objects[at].label;
+            ADD_FAILURE() << "a store overtakes an access of " << label;
         }
-        if (incoherent) lastWrite_[at] = ++clock_;
-        if (access != Access::Copy && access != Access::Host) lastAccess_[at] = ++clock_;
+        if (incoherent) block.lastWrite = ++clock_;
+        if (access != Access::Copy && access != Access::Host) block.lastAccess = ++clock_;
     }
 
     const Plan& plan_;
     const RandomGraph& graph_;
     Interpreter& expected_;
-    std::vector<Token> content_;
-    std::vector<std::uint64_t> lastWrite_, lastAccess_; // by object, on the clock
+    std::map<std::pair<int, std::uint64_t>, Block> blocks_; // by object and number in it
     std::array<std::uint64_t, 8> barrierAt_{};
     std::uint64_t clock_ = 0;
     std::vector<bool> swapped_; // history: the second object is the present one
