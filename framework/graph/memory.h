@@ -7,9 +7,8 @@ namespace kestrel {
 // Gives each resource of the plan its object and fills the memory report.
 // - Transient textures of equal descriptors and disjoint lifetimes share one object (greedy colouring of
 //   intervals by their begin, which is optimal for each descriptor).
-// - Transient buffers lie in ranges of one object, where disjoint lifetimes may overlap, whatever their
-// sizes.
-//   Without a gain each has an object of its own or shares one of its size, and so do buffers smaller than
+// - Transient buffers of any size lie in ranges of one object, where disjoint lifetimes may overlap. Without
+//   a gain each has an object of its own or shares one of its size, and so do buffers smaller than
 //   rangeAlignment.
 // - The others get their own, a history two that follow each other.
 void assignObjects(Plan& plan, bool shareMemory);
@@ -17,8 +16,8 @@ void assignObjects(Plan& plan, bool shareMemory);
 // Whether one object can serve both: everything but view and module bits is equal.
 bool sameStorage(const Desc& a, const Desc& b);
 
-// Bytes. The largest alignment that OpenGL 4.6 lets a device ask of a bound range of a buffer, be it a storage
-// block, a uniform block or a texture buffer.
+// Bytes. The largest alignment that OpenGL 4.6 lets a device ask of a bound range of a buffer, be it a
+// storage block, a uniform block or a texture buffer.
 inline constexpr std::uint64_t rangeAlignment = 256;
 
 // Something that needs bytes from step `first` to step `last`, both included.
