@@ -34,8 +34,9 @@ bool hasExtent(const Sphere& sphere, int resolution) {
 }
 
 void boundOccupied(shared::OccupancyGrid& grid, const Box& box) {
-    // From a surface to the far side of a cell that it touches, and some rounding.
-    constexpr float beyond = 1.25f;
+    // From a surface to the far side of a cell that it touches, or of one half a cell behind it
+    // (OccupancyMap::inset), and some rounding.
+    constexpr float beyond = 1.75f;
     const glm::vec3 corner(grid.halfResolution);
     grid.low = glm::clamp(centredCells(grid, box.min) - beyond, -corner, corner);
     grid.high = glm::clamp(centredCells(grid, box.max) + beyond, -corner, corner);

@@ -25,8 +25,9 @@ const char* neededExtension(OccupancyMethod method) {
     return nullptr;
 }
 
-const std::vector<TriangleClass> allClasses = {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided,
-                                               TriangleClass::Masked, TriangleClass::MaskedDoubleSided};
+const std::vector<TriangleClass> oneSidedClasses = {TriangleClass::Opaque, TriangleClass::Masked};
+const std::vector<TriangleClass> doubleSidedClasses = {TriangleClass::OpaqueDoubleSided,
+                                                       TriangleClass::MaskedDoubleSided};
 
 } // namespace
 
@@ -50,7 +51,10 @@ PassType OccupancyMap::type() {
                 "triangle "
                 "along one, or exactly")
         .flag("jitter", &OccupancyMap::jitter,
-              "Shifts the cells by up to half of one, differently every frame");
+              "Shifts the cells by up to half of one, differently every frame")
+        .number("inset", &OccupancyMap::inset, 0, 0.5, "cells",
+                "How far behind one-sided surfaces their cells are marked, where they are rasterized: cells "
+                "make everything thicker");
     return table;
 }
 
@@ -171,12 +175,20 @@ void OccupancyMap::execute(const Step& step, Commands& commands) {
     DrawState state = DrawState::overwrite();
     state.viewport = glm::uvec2(n);
     state.logicOr = method == OccupancyMethod::LogicOp;
-    if (method == OccupancyMethod::DominantAxis) return commands.drawScene(state, allClasses);
+    if (method == OccupancyMethod::DominantAxis) return rasterize(commands, state);
     for (int axis = 0; axis < 3; ++axis) {
         if (makesColumns(method) && step.name.back() != "xyz"[axis]) continue;
         commands.set("axis", axis);
-        commands.drawScene(state, allClasses);
+        rasterize(commands, state);
     }
+}
+
+// A surface with two sides has none to be marked behind.
+void OccupancyMap::rasterize(Commands& commands, const DrawState& state) const {
+    commands.set("inset", inset);
+    commands.drawScene(state, oneSidedClasses);
+    commands.set("inset", 0.0f);
+    commands.drawScene(state, doubleSidedClasses);
 }
 
 void OccupancyMap::uploadGrid(Commands& commands) const {

@@ -6,6 +6,8 @@
 
 namespace kestrel {
 
+struct DrawState;
+
 // How the map is made. The first four rasterize along x, y and z and take the union (ROMA, section 6; Forest
 // et al. 2009) and give the same bits: they differ in how fragments of one column come together. Rasterizing
 // tests cells' centre lines and so misses cells that a surface only grazes; `Exact` misses none.
@@ -28,12 +30,18 @@ public:
     int resolution = 128;
     OccupancyMethod method = OccupancyMethod::ThreeAxis;
     bool jitter = false;
+    // A marked cell reaches over the surface on both sides. Along the axis that it is rasterized along, what
+    // is w cells thick comes out w + 1 thick on the mean over its place; with its faces `inset` behind, 1 +
+    // |w - 2 inset|: less for all that is thicker than `inset`. The best of a sweep from 0 to 0.5, by the
+    // FLIP of ambient occlusion on `blob` and `tower` together.
+    float inset = 0.15f;
 
 private:
     [[nodiscard]] std::vector<Step> rasterSteps(const World& world) const;
     [[nodiscard]] std::vector<Step> columnSteps(const World& world) const;
     void declareInternals(const Step& step, const World& world, Declaration& declaration) const;
     void uploadGrid(Commands& commands) const;
+    void rasterize(Commands& commands, const DrawState& state) const;
 };
 
 } // namespace kestrel

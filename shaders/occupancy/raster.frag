@@ -16,6 +16,7 @@
 #include "shared/triangle_cell.h"
 
 in float cell_depth;
+uniform float inset; // cells along the axis
 
 #ifdef FACE_BY_TRIANGLE
 flat in int face_axis;
@@ -68,7 +69,9 @@ uvec4 columnBit(int z, int first) {
 }
 
 void main() {
-    int z = clamp(int(floor(cell_depth)), 0, RESOLUTION - 1);
+    // Behind the surface, as the triangle is wound: the normals of front faces point along the axis, to greater depth.
+    float behind = gl_FrontFacing ? -inset : inset;
+    int z = clamp(int(floor(cell_depth + behind)), 0, RESOLUTION - 1);
     bool there = covers();
 #ifdef INTO_MAP
     if (!there) discard;

@@ -77,7 +77,9 @@ TEST_F(OccupancyMapGl, RasterizedCellsAreMetByTriangles) {
     for (const int n : {32, 128}) {
         const std::vector<std::uint32_t> exact = mapOf(scene, n, "exact");
         for (const char* method : {"three_axis", "dominant_axis"}) {
-            const std::vector<std::uint32_t> map = mapOf(scene, n, method);
+            Renderer renderer = mapRenderer(scene, properties(n, method) + R"(, "inset": 0)");
+            renderer.frame();
+            const std::vector<std::uint32_t> map = wordsOf(renderer, {"map", "occupancy"});
             size_t extra = 0;
             for (size_t i = 0; i < map.size(); ++i)
                 extra += static_cast<size_t>(std::popcount(map[i] & ~exact[i]));
@@ -136,6 +138,74 @@ TEST_F(OccupancyMapGl, OneTriangleIsSomewhereInTheMap) {
         EXPECT_GT(bits, 200u) << method;
         EXPECT_LT(bits, 1200u) << method;
     }
+}
+
+// The surface of a box, front faces outside.
+Scene boxScene(const glm::vec3& extent, bool doubleSided) {
+    std::vector<glm::vec3> corners;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0f, 1.0f}) {
+            const auto at = [&](float u, float v) {
+                glm::vec3 p(0);
+                p[axis] = side * extent[axis];
+                p[(axis + 1) % 3] = side * u * extent[(axis + 1) % 3];
+                p[(axis + 2) % 3] = v * extent[(axis + 2) % 3];
+                return p;
+            };
+            for (const glm::vec3& p : {at(-1, -1), at(1, -1), at(1, 1), at(-1, -1), at(1, 1), at(-1, 1)})
+                corners.push_back(p);
+        }
+    }
+    Scene scene = sceneOf(corners);
+    Material material;
+    material.doubleSided = doubleSided;
+    scene.materials = {material};
+    scene.meshes[0].primitives[0].material = 0;
+    finishScene(scene);
+    return scene;
+}
+
+struct CellBox {
+    glm::ivec3 low{1 << 20}, high{-1};
+};
+
+CellBox occupiedBox(const std::vector<std::uint32_t>& map, int n) {
+    CellBox box;
+    for (int z = 0; z < n; ++z)
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x)
+                if (isSet(map, n, {x, y, z})) {
+                    box.low = glm::min(box.low, glm::ivec3(x, y, z));
+                    box.high = glm::max(box.high, glm::ivec3(x, y, z));
+                }
+    return box;
+}
+
+// Every face of a box is marked where it would be if it lay so far inside, whichever way it looks; one with
+// two sides where it lies. Edges apart, which cells' centre lines may miss: the box is many cells wide.
+TEST_F(OccupancyMapGl, OneSidedSurfacesAreMarkedBehind) {
+    constexpr int n = 64;
+    int moved = 0;
+    for (const char* method : {"three_axis", "logic_op", "dominant_axis"})
+        for (const float inset : {0.0f, 0.25f, 0.5f})
+            for (const bool doubleSided : {false, true})
+                for (const glm::vec3& extent : {glm::vec3(1, 0.61f, 0.37f), glm::vec3(0.53f, 0.97f, 0.83f),
+                                                glm::vec3(0.71f, 0.43f, 1)}) {
+                    Renderer renderer =
+                        mapRenderer(boxScene(extent, doubleSided),
+                                    properties(n, method) + R"(, "inset": )" + std::to_string(inset));
+                    renderer.frame();
+                    const CellBox box = occupiedBox(wordsOf(renderer, {"map", "occupancy"}), n);
+                    const shared::OccupancyGrid grid = gridOf(renderer);
+                    const float behind = doubleSided ? 0 : inset;
+                    const glm::vec3 low = shared::cellsOf(grid, -extent),
+                                    high = shared::cellsOf(grid, extent);
+                    EXPECT_EQ(box.low, glm::ivec3(glm::floor(low + behind))) << method << " " << inset;
+                    EXPECT_EQ(box.high, glm::ivec3(glm::floor(high - behind))) << method << " " << inset;
+                    moved += box.low != glm::ivec3(glm::floor(low));
+                    moved += box.high != glm::ivec3(glm::floor(high));
+                }
+    EXPECT_GT(moved, 10);
 }
 
 // Scale and place change nothing but rounding.
