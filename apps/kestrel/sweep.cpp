@@ -9,6 +9,7 @@
 #include "gl/context.h"
 #include "gl/timer.h"
 #include "measure/sweep_run.h"
+#include "measure/sweep_schema.h"
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,7 +22,7 @@ struct SweepArguments {
     std::string file, folder, shard, only, size, backend = "egl";
     std::vector<std::string> merge;
     int frames = 0;
-    bool resume = false, list = false, json = false;
+    bool resume = false, list = false, json = false, schema = false;
 };
 
 Sweep openSweep(const SweepArguments& arguments) {
@@ -113,6 +114,11 @@ int merge(const Sweep& sweep, const SweepArguments& arguments, const std::vector
 }
 
 int sweepCommand(const SweepArguments& arguments) {
+    if (arguments.schema) {
+        fmt::print("{}", sweepSchema());
+        return static_cast<int>(ExitStatus::Done);
+    }
+    if (arguments.file.empty()) throw InputError("FILE is missing: the sweep file");
     const Registry& registry = loadedRegistry();
     const Sweep sweep = openSweep(arguments);
     const std::vector<SweepPoint> points = expandSweep(sweep);
@@ -149,8 +155,8 @@ int sweepCommand(const SweepArguments& arguments) {
 void addSweepCommand(CLI::App& app, Run& run) {
     CLI::App* command = app.add_subcommand("sweep", "Measure error against run time of many variants");
     const auto arguments = std::make_shared<SweepArguments>();
-    command->add_option("FILE", arguments->file, "Sweep file (.json): scenes, the reference, variants")
-        ->required();
+    command->add_option("FILE", arguments->file, "Sweep file (.json): scenes, the reference, variants");
+    command->add_flag("--schema", arguments->schema, "Print the JSON schema of sweep files");
     command->add_option("--out,-o", arguments->folder, "Folder for results.json, results.csv, index.html");
     command->add_flag("--resume", arguments->resume, "Go on with what the folder holds");
     command->add_option(
@@ -174,7 +180,8 @@ void addSweepCommand(CLI::App& app, Run& run) {
                     "  kestrel sweep graphs/sweeps/ambient_occlusion.json --out results\n"
                     "  kestrel sweep graphs/sweeps/snap.json --out results --resume\n"
                     "  parallel kestrel sweep FILE --shard {}/4 --out shard{} ::: 1 2 3 4\n"
-                    "  kestrel sweep FILE --out results --merge shard1 shard2 shard3 shard4");
+                    "  kestrel sweep FILE --out results --merge shard1 shard2 shard3 shard4\n"
+                    "  kestrel sweep --schema > graphs/sweeps/schema.json");
     command->callback([arguments, &run] { run = [arguments] { return sweepCommand(*arguments); }; });
 }
 

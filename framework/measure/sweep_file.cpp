@@ -12,10 +12,6 @@ namespace {
 
 using Kind = Json::Kind;
 
-// Names become keys, labels and file names; bounds keep a stranger's file from filling the report.
-constexpr size_t maxSweepName = 200;
-constexpr int maxSweepFrames = 100'000, maxSweepRepeats = 10'000, maxSweepSide = 16'384;
-
 class SweepReader {
 public:
     explicit SweepReader(std::vector<Problem>& problems)
@@ -39,7 +35,7 @@ public:
         sweep.repeats = whole(fields.optional("repeats"), "repeats", 1, maxSweepRepeats, sweep.repeats);
         sweep.timedFrames =
             whole(fields.optional("timed_frames"), "timed_frames", 1, maxSweepFrames, sweep.timedFrames);
-        sweep.seed = static_cast<std::uint32_t>(whole(fields.optional("seed"), "seed", 0, 1 << 30, 0));
+        sweep.seed = static_cast<std::uint32_t>(whole(fields.optional("seed"), "seed", 0, maxSweepSeed, 0));
         sweep.moving = flag(fields.optional("moving", Kind::Bool));
         sweep.rebuild = flag(fields.optional("rebuild", Kind::Bool));
         sweep.hdr = flag(fields.optional("hdr", Kind::Bool));
@@ -150,7 +146,7 @@ private:
         JsonFields fields(plot, "'plot'", problems_);
         sweep.plotTime = text(fields.optional("time", Kind::String), sweep.plotTime);
         if (const Json* error = fields.optional("error", Kind::String)) {
-            static const std::vector<std::string> errors{"flip", "mse", "rmse", "ssim"};
+            const std::vector<std::string>& errors = sweepErrors();
             sweep.plotError = error->text;
             if (std::ranges::find(errors, error->text) == errors.end())
                 note(error->where, fmt::format("the error '{}' is none of flip, mse, rmse and ssim{}",
@@ -411,6 +407,11 @@ private:
 };
 
 } // namespace
+
+const std::vector<std::string>& sweepErrors() {
+    static const std::vector<std::string> errors{"flip", "mse", "rmse", "ssim"};
+    return errors;
+}
 
 Sweep parseSweep(std::string_view text, const std::string& file) {
     std::vector<Problem> problems;

@@ -12,6 +12,12 @@ namespace kestrel {
 
 // Bounds on what a file may ask for.
 inline constexpr size_t maxSweepPoints = 10'000;
+inline constexpr size_t maxSweepName = 200; // bytes: names become keys, labels and file names
+inline constexpr int maxSweepFrames = 100'000, maxSweepRepeats = 10'000, maxSweepSide = 16'384,
+                     maxSweepSeed = 1 << 30;
+
+// The errors that a page can show first.
+const std::vector<std::string>& sweepErrors();
 
 // One of the settings that `--set` takes, and where it stands.
 struct SweepSetting {

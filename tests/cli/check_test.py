@@ -2,7 +2,8 @@
 import json
 from pathlib import Path
 
-from kestrel_cli import RAY_AO, done, folder, kestrel, refused, run_tests
+from json_schema import misfits
+from kestrel_cli import RAY_AO, SOURCE, done, folder, kestrel, refused, run_tests
 
 BLOB = ["--scene", "builtin:blob?detail=0.05"]
 
@@ -86,6 +87,39 @@ def test_passes_lists_and_tells():
     assert "$schema" in json.loads(done("passes", "--schema").out)
 
 
+def test_schemas_are_current_and_what_is_shipped_fits():
+    graphs = SOURCE / "graphs"
+    for command, files in [("passes", graphs), ("passes", graphs / "sweeps" / "graphs"), ("sweep", graphs / "sweeps")]:
+        text = done(command, "--schema").out
+        shipped = graphs / "schema.json" if command == "passes" else files / "schema.json"
+        assert text == shipped.read_text(), f"{shipped} is old: kestrel {command} --schema > {shipped}"
+        seen = [file for file in sorted(files.glob("*.json")) if file.name != "schema.json"]
+        assert seen
+        for file in seen:
+            assert misfits(json.loads(file.read_text()), json.loads(text)) == [], file
+
+
+def test_the_schema_of_sweeps_refuses_what_the_reader_refuses():
+    schema = done("sweep", "--schema").json()
+    picture = {"name": "a", "graph": "ray_ao.json", "output": "mean.result"}
+    sweep = {"kestrel_sweep": 1, "scenes": ["builtin:blob"], "variants": [picture],
+             "reference": {"graph": "reference_ao.json", "output": "reference.visibility"}}
+    assert misfits(sweep, schema) == []
+    with folder() as here:
+        file = Path(here) / "sweep.json"
+        file.write_text(json.dumps(sweep))
+        done("sweep", file, "--list")
+        for wrong in [{"frame": 3}, {"frames": 0}, {"repeats": 10_001}, {"size": [4]}, {"scenes": []},
+                      {"kestrel_sweep": 2}, {"scenes": [{"camera": "stairs"}]}, {"plot": {"error": "psnr"}},
+                      {"times": {"total": ["roma"]}}, {"times": {"own": []}}, {"hdr": 1},
+                      {"variants": [{**picture, "hits": "query.hits"}]}, {"variants": [{"name": "a"}]},
+                      {"variants": [{**picture, "axes": {"x": []}}]}, {"variants": [{**picture, "set": [1]}]},
+                      {"variants": [{**picture, "axes": {"x": {"set": ["x=1"], "values": [1]}}}]}]:
+            assert misfits({**sweep, **wrong}, schema), wrong
+            file.write_text(json.dumps({**sweep, **wrong}))
+            refused("sweep", file, "--list")
+
+
 def test_scene_lists_tells_and_exports():
     assert "builtin:tower" in done("scene", "list").out
     info = done("scene", "info", "builtin:blob?detail=0.05", "--json").json()
@@ -112,13 +146,14 @@ def test_compare_measures_and_holds_limits():
 
 def test_usage():
     assert "kestrel 0" in done("--version").out and "backends: egl" in done("--version").out
-    for command in ["render", "check", "passes", "dot", "compare", "scene"]:
+    for command in ["render", "check", "passes", "dot", "compare", "scene", "sweep"]:
         assert command in done("--help").out
         assert "Example" in done(command, "--help").out
     assert "--help" in refused()[0]
     assert "frobnicate" in refused("frobnicate")[0]
     assert "--frobnicate" in refused("render", RAY_AO, "--frobnicate")[0]
     assert len(refused("render")) == 1
+    assert "FILE is missing" in refused("sweep")[0]
 
 
 if __name__ == "__main__":
