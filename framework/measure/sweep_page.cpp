@@ -49,12 +49,12 @@ results.json beside it.</noscript></div>
 <script type="application/json" id="results">
 {}</script>
 <script>
-{}</script>
+{}{}</script>
 </body>
 </html>
 )",
                        htmlText(sweep.title), page::style, scriptJson(resultsJson(sweep, results)),
-                       page::script);
+                       page::plotScript, page::tableScript);
 }
 
 } // namespace kestrel

@@ -4,7 +4,9 @@
 
 namespace kestrel::page {
 
-extern const std::string_view style;  // CSS
-extern const std::string_view script; // JavaScript: draws everything from the JSON in the page
+extern const std::string_view style; // CSS
+// JavaScript that draws everything from the JSON in the page, in two parts of one text.
+extern const std::string_view plotScript;  // what all of it needs; tool tips and plots
+extern const std::string_view tableScript; // the table, the pictures, and what starts it all
 
 } // namespace kestrel::page
