@@ -57,6 +57,10 @@ PassType SoftShadow::type() {
         .output("visibility", PortKind::Texture,
                 "How bright the result is over what it would be without shadows; 1 where no light reaches")
         .range(0, 1)
+        .output(
+            "weight", PortKind::Texture,
+            "How bright the result would be without shadows: what this frame's visibility counts in a mean")
+        .range(0, std::numeric_limits<double>::infinity())
         .internal("emitters", PortKind::Buffer, "What shines (shared/emitter.h)")
         .number("rays", &SoftShadow::rays, 1, 256, "rays",
                 "Rays a pixel and frame, for all emitters together")
@@ -79,17 +83,19 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
     const bool dark = !meshes && !rectangles && !spheres;
     Output result{.port = "result", .desc = Desc::texture2D(Format::RGBA32F, depth.extent, depth.view)};
     Output visibility{.port = "visibility", .desc = Desc::texture2D(Format::R32F, depth.extent, depth.view)};
+    Output weight{.port = "weight", .desc = Desc::texture2D(Format::R32F, depth.extent, depth.view)};
     if (background || dark) {
         result.constant = glm::vec4(0);
         visibility.constant = glm::vec4(1);
-        declaration.outputs = {std::move(result), std::move(visibility)};
+        weight.constant = glm::vec4(0);
+        declaration.outputs = {std::move(result), std::move(visibility), std::move(weight)};
         declaration.leftOut.push_back(
             {"shadow rays", background ? "the depth is empty everywhere"
                             : emission ? "the scene has no area light and no material emits light"
                                        : "the scene has no area light, and emission is off"});
         return declaration;
     }
-    const bool tellsVisibility = demand.reads("visibility");
+    const bool tellsVisibility = demand.reads("visibility"), tellsWeight = demand.reads("weight");
     const std::uint64_t capacity = emitterCapacity(world, meshes);
     const auto limit = static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
     if (capacity * shared::emitterRecordTexels > limit)
@@ -98,6 +104,7 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
                                      capacity, capacity * shared::emitterRecordTexels, limit)});
     declaration.outputs.push_back(std::move(result));
     if (tellsVisibility) declaration.outputs.push_back(std::move(visibility));
+    if (tellsWeight) declaration.outputs.push_back(std::move(weight));
     declaration.outputs.push_back(
         {.port = "emitters",
          .desc = Desc::buffer(capacity * sizeof(shared::EmitterRecord), Format::RGBA32F)});
@@ -131,6 +138,10 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
         steps.back().defines.emplace("VISIBILITY", "1");
         steps.back().uses.push_back({.port = "visibility", .access = Access::Image, .write = true});
     }
+    if (tellsWeight) {
+        steps.back().defines.emplace("WEIGHT", "1");
+        steps.back().uses.push_back({.port = "weight", .access = Access::Image, .write = true});
+    }
     std::move(steps.begin(), steps.end(), std::back_inserter(declaration.steps));
     declaration.depends = Causes::Frame | Causes::Geometry | Causes::Transforms | Causes::Materials |
                           Causes::Lights | Causes::Properties;
@@ -149,9 +160,9 @@ void SoftShadow::upload(Commands& commands) {
     if (emitters_.size() * sizeof(shared::EmitterRecord) > commands.desc("emitters").bytes)
         return commands.overflow("emitters", emitters_.size());
     std::vector<shared::EmitterRecord> records;
-    records.reserve(emitters_.size() + 1);
     for (const AreaEmitter& emitter : emitters_) records.push_back(recordOfEmitter(emitter));
-    if (records.empty()) records.emplace_back(); // it may shine at another time only
+    // Wholly written: memory that other buffers had before may hold anything.
+    records.resize(commands.desc("emitters").bytes / sizeof(shared::EmitterRecord));
     commands.upload("emitters", records);
 }
 

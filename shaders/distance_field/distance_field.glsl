@@ -91,8 +91,10 @@ bool M(closestHit)(Ray ray, out Hit hit) {
     float t, rest;
     if (!M(march)(ray, t, rest)) return false;
     hit.t = clamp((t + rest) * M(grid).cellSize, ray.tMin, ray.tMax);
-    // The cell's centre is within `rest` of t, its corners half a diagonal from there.
-    hit.error = (2.0 * rest + 0.8660254) * M(grid).cellSize;
+    // The cell's centre is within `rest` of t, its corners half a diagonal from there. What the ray met from where it was
+    // moved to is reported on the ray that was asked for.
+    float moved = ray.normal != vec3(0.0) ? M(settings).originOffset : 0.0;
+    hit.error = (2.0 * rest + 0.8660254 + moved) * M(grid).cellSize;
     return true;
 }
 

@@ -75,3 +75,15 @@ float occupancyBegin(OccupancyGrid grid, OccupancySettings settings, Ray ray) {
     float skipped = ray.normal != vec3(0.0) ? settings.skip : 0.0;
     return max(ray.tMin * grid.inverseCellSize, skipped);
 }
+
+// How far from where it is reported the surface of a hit may lie, in cells: the least bounds that always hold.
+//
+// Marked is what the surface touches, so it lies within a cell's diagonal of every point of a marked cell: of a hit there too.
+const float markedCellReach = 1.7320508; // sqrt(3)
+// A cell of a turned map is occupied if its centre lies in a marked cell; from the centre to a hit in it it is half a diagonal.
+const float turnedCellReach = 2.5980762; // 3 / 2 sqrt(3)
+
+// The same in render space. What the ray met from where it was moved to is reported on the ray that was asked for.
+float occupancyError(OccupancyGrid grid, OccupancySettings settings, Ray ray, float reach) {
+    return (reach + (ray.normal != vec3(0.0) ? settings.originOffset : 0.0)) * grid.cellSize;
+}

@@ -241,7 +241,7 @@ bool M(closestHit)(Ray ray, out Hit hit) {
     float enter = clamp(max(nearer.x, max(nearer.y, nearer.z)), 0.0, line.to);
     float leave = clamp(min(farther.x, min(farther.y, farther.z)), enter, line.to);
     hit.t = clamp((line.start + 0.5 * (enter + leave)) * M(grid).cellSize, ray.tMin, ray.tMax);
-    hit.error = M(grid).cellSize;
+    hit.error = occupancyError(M(grid), M(settings), ray, markedCellReach);
     ivec3 real = cell ^ line.flip;
     hit.id = uvec2(uint(real.x | real.y << 8 | real.z << 16), 0u);
     return true;

@@ -129,7 +129,7 @@ bool M(closestHit)(Ray ray, out Hit hit) {
     if (cell < 0) return false;
     float t = (way.up ? 1.0 : -1.0) * (float(cell) + 0.5 - way.z) * M(grid).cellSize;
     hit.t = clamp(t, ray.tMin, ray.tMax);
-    hit.error = M(grid).cellSize;
+    hit.error = occupancyError(M(grid), M(settings)(), ray, turnedCellReach);
     hit.id = uvec2(way.map, cell);
     return true;
 }
@@ -177,7 +177,7 @@ bool M(closestHit)(Ray ray, out Hit hit) {
     int cell = M(walk)(ray, true, t);
     if (cell < 0) return false;
     hit.t = clamp(t * M(grid).cellSize, ray.tMin, ray.tMax);
-    hit.error = M(grid).cellSize;
+    hit.error = occupancyError(M(grid), M(settings)(), ray, turnedCellReach);
     hit.id = uvec2(ray.token & 0xffffu, cell);
     return true;
 }

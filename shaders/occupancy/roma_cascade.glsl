@@ -174,7 +174,7 @@ bool M(search)(Ray ray, bool nearest, out Hit hit) {
         float t = M(find)(ray, level, grid, own, finer, cell);
         if (cell >= 0 && t < best) {
             best = t;
-            hit.error = grid.cellSize;
+            hit.error = occupancyError(grid, M(settings)(), ray, turnedCellReach);
             hit.id = uvec2(level * DIRECTIONS + alignedMap(ray), cell);
         }
         if (cell >= 0 && !nearest) break;

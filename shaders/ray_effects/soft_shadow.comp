@@ -18,6 +18,9 @@ layout(rgba32f) uniform image2D result;
 #ifdef VISIBILITY
 layout(r32f) uniform writeonly image2D visibility;
 #endif
+#ifdef WEIGHT
+layout(r32f) uniform writeonly image2D weight;
+#endif
 layout(std140) uniform DepthView { ViewData depthView; };
 uniform uint emitterCount;
 
@@ -130,9 +133,10 @@ float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
 
 bool isShadowed(Ray ray, LightSample point) {
 #ifdef APPROXIMATE
-    // What a proxy meets so close to the light may be the light's own surface, the more so at a grazing angle.
+    // What a proxy meets so close to the plane of the light may be the light's own surface. At a grazing angle a ray is
+    // close to it for long, and brings little.
     Hit hit;
-    return tracer_closestHit(ray, hit) && hit.t + 2.0 * hit.error / max(point.facing, 0.25) < ray.tMax;
+    return tracer_closestHit(ray, hit) && (ray.tMax - hit.t) * point.facing > hit.error;
 #else
     return tracer_anyHit(ray);
 #endif
@@ -177,6 +181,9 @@ void main() {
 #ifdef VISIBILITY
     float arrived = luminance(light);
     imageStore(visibility, pixel, vec4(blocked > 0.0 ? arrived / (arrived + blocked) : 1.0));
+#endif
+#ifdef WEIGHT
+    imageStore(weight, pixel, vec4((luminance(light) + blocked) / float(TOTAL_RAYS)));
 #endif
 #else
     imageStore(result, pixel, vec4(light, blocked));
