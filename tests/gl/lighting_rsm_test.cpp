@@ -68,8 +68,9 @@ TEST_F(Rsm, OnlyTheLitSideOfTheSurfaceItselfCounts) {
     EXPECT_EQ(probed("", -1).at(32, 32), 0) << "the other side is dark";
     EXPECT_EQ(probed("\"lift\": 0.1", 1).at(32, 32), 0) << "nothing is there";
     EXPECT_EQ(probed("\"lift\": -0.1", 1).at(32, 32), 0);
-    EXPECT_GT(probed("\"lift\": -0.1, \"error\": 0.11", 1).at(32, 32), 0.1f)
-        << "the surface may lie so far away";
+    EXPECT_EQ(probed("\"lift\": -0.1, \"error\": 0.3", 1).at(32, 32), 0)
+        << "behind the surface a quarter of the error counts";
+    EXPECT_GT(probed("\"lift\": -0.1, \"error\": 0.44", 1).at(32, 32), 0.1f);
     EXPECT_GT(probed("\"lift\": 0.1, \"error\": 0.11", 1).at(32, 32), 0.1f);
 }
 

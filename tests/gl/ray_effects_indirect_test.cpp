@@ -55,6 +55,7 @@ TEST_F(Indirect, TheIntegratingSphere) {
     for (const Settings& settings :
          {Settings{}, Settings{"indirect.radiance=rsm.radiance"},
           Settings{"indirect.radiance=rsm.radiance", "indirect.tracer=roma.tracer"},
+          Settings{"indirect.radiance=rsm.radiance", "indirect.tracer=roma.tracer", "roma.offset=0.5"},
           Settings{"indirect.radiance=rsm.radiance", "indirect.tracer=roma.tracer", "indirect.snap=false",
                    "roma.iterations=64"}}) {
         const Image light =
@@ -64,9 +65,10 @@ TEST_F(Indirect, TheIntegratingSphere) {
             for (int x = 0; x < light.width; ++x)
                 for (int k = 0; k < 3; ++k)
                     sum[k] += double{light.at(x, y, k)} / (light.width * light.height);
-        // Facets stand up to 1 % nearer than the sphere. Hits of a proxy that stands further off the surface
-        // than it says miss the map's surface: measured 19 % and 22 % of 64 cells' hits.
-        const double tolerance = settings.size() < 2 ? 0.02 : 0.25;
+        // Facets stand up to 1 % nearer than the sphere. Through ROMA as exactly (measured: 0.2 % off) where
+        // rays start 1.5 cells off the surface; from half a cell on 6.5 % are lost of 64 cells, to hits of
+        // the surface's own cells further behind it than the map of light takes for it.
+        const double tolerance = !settings.empty() && settings.back() == "roma.offset=0.5" ? 0.08 : 0.02;
         EXPECT_NEAR(sum[0] / expected, 1, tolerance) << settings.size();
         EXPECT_NEAR(sum[1] / expected, 0.5, 0.5 * tolerance) << settings.size();
         EXPECT_NEAR(sum[2] / expected, 0.25, 0.25 * tolerance) << settings.size();
