@@ -28,7 +28,80 @@ TEST_F(Ao, AnOpenPlaneSeesTheWholeSkyAtAnyTilt) {
         const Image mask = coverage(scene);
         ASSERT_GT(meanWhere(mask, mask), 0);
         for (const float value : visibility(scene, byBvh, 4).values) ASSERT_EQ(value, 1.0f) << degrees;
-        EXPECT_GE(meanWhere(visibility(scene, {"roma.offset=1.5"}, 32), mask), 0.995) << "ROMA, tilted by " << degrees;
+        EXPECT_GE(meanWhere(visibility(scene, {"roma.offset=1.5"}, 32), mask), 0.995)
+            << "ROMA, tilted by " << degrees;
+        // Half a cell off the surface, as by default, a plane meets itself: measured 0.915 for one between
+        // two layers of cells, which both hold it, and 0.975 and more at other tilts.
+        EXPECT_GE(meanWhere(visibility(scene, {}, 32), mask), degrees == 0 ? 0.9 : 0.97)
+            << "ROMA, tilted by " << degrees;
+    }
+}
+
+// What a rectangle with these corners takes of the sky over a point with normal y: Lambert's formula.
+double rectangleFactor(const std::array<glm::dvec3, 4>& corners, const glm::dvec3& p) {
+    double sum = 0;
+    for (size_t i = 0; i < 4; ++i) {
+        const glm::dvec3 a = glm::normalize(corners[i] - p), b = glm::normalize(corners[(i + 1) % 4] - p);
+        sum += std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)) * glm::normalize(glm::cross(a, b)).y;
+    }
+    return std::abs(sum) / (2 * glm::pi<double>());
+}
+
+// A strip of floor at the foot of a wall that takes nearly half of its sky.
+TEST_F(Ao, BesideAWallThereIsHalfASky) {
+    const float height = 8, length = 16, width = 1;
+    std::vector<glm::vec3> corners;
+    const auto add = [&corners](const glm::vec3& at, const glm::vec3& u, const glm::vec3& v) {
+        for (const glm::vec3& p : {at, at + u, at + u + v, at, at + u + v, at + v}) corners.push_back(p);
+    };
+    add({0, 0, -length / 2}, {0, 0, length}, {width, 0, 0});
+    add({0, 0, -length / 2}, {0, height, 0}, {0, 0, length});
+    const Scene scene = trianglesScene(corners);
+    const glm::dvec3 middle(width / 2, height / 2, 0); // what render space counts from
+    std::array<glm::dvec3, 4> wall{
+        glm::dvec3(0, 0, -length / 2), {0, height, -length / 2}, {0, height, length / 2}, {0, 0, length / 2}};
+    for (glm::dvec3& corner : wall) corner -= middle;
+    const glm::vec3 target = -glm::vec3(middle) + glm::vec3(width / 2, 0, 0),
+                    eye = target + glm::vec3(0, 2, 0);
+    const double cell = std::sqrt(width * width + height * height + length * length) / 128;
+    const auto errors = [&](const std::vector<std::string>& settings) {
+        Graph graph = shippedGraph("ray_ao", settings);
+        graph.outputs.push_back({{"gbuffer", "position"}, {}});
+        Renderer made = renderer(graph, scene);
+        made.setFreeCamera(CameraState{.view = glm::lookAt(eye, target, glm::vec3(1, 0, 0)),
+                                       .position = eye,
+                                       .nearPlane = 0.1f,
+                                       .farPlane = 0});
+        for (int i = 0; i < 64; ++i) made.frame();
+        const Image seen = made.read(mean), position = made.read({"gbuffer", "position"});
+        double bias = 0, squares = 0, level = 0, count = 0;
+        for (int y = 0; y < seen.height; ++y)
+            for (int x = 0; x < seen.width; ++x) {
+                const glm::dvec3 p(position.at(x, y, 0), position.at(x, y, 1), position.at(x, y, 2));
+                const bool floor = position.at(x, y, 3) > 0 && std::abs(p.y - target.y) < 1e-3;
+                // Nearer than two cells the map does not tell the wall from the floor.
+                if (!floor || p.x + middle.x < 2 * cell) continue;
+                const double expected = 1 - rectangleFactor(wall, p);
+                level += expected;
+                bias += double{seen.at(x, y)} - expected;
+                squares += std::pow(double{seen.at(x, y)} - expected, 2);
+                ++count;
+            }
+        EXPECT_GT(count, 100);
+        EXPECT_NEAR(level / count, 0.5, 0.06);
+        return std::pair{bias / count, std::sqrt(squares / count)};
+    };
+    // 64 independent rays of a fair coin: 1/16; a stratified sequence stays well below (measured 0.008).
+    const auto [exactBias, exactNoise] = errors(byBvh);
+    EXPECT_LE(std::abs(exactBias), 0.001);
+    EXPECT_LE(exactNoise, 0.012);
+    // Measured: 0.004 to 0.006 too dark in the mean, 0.025 to 0.031 by pixels.
+    for (const auto& settings : {std::vector<std::string>{"bom.method=exact"},
+                                 {"bom.method=exact", "roma.angular=8"},
+                                 {"bom.method=exact", "roma.offset=1.5"}}) {
+        const auto [bias, noise] = errors(settings);
+        EXPECT_LE(std::abs(bias), 0.01) << settings.back();
+        EXPECT_LE(noise, 0.04) << settings.back();
     }
 }
 
