@@ -73,11 +73,19 @@ inline vec2 squareFromHemisphere(vec3 d) {
     return vec2(0.5f + 0.5f * (x < 0.0f ? -px : px), 0.5f + 0.5f * (y < 0.0f ? -py : py));
 }
 
-// Index of the stratum of unit direction d, d.z >= 0, out of n x n: constant time.
+// Index of the stratum of unit direction d, d.z >= 0, out of n x n: constant time. As squareFromHemisphere(), by one root
+// less: the disk's point itself is not needed.
 inline int stratumOf(vec3 d, int n) {
-    vec2 p = squareFromHemisphere(d);
-    int x = clamp(int(p.x * float(n)), 0, n - 1);
-    int y = clamp(int(p.y * float(n)), 0, n - 1);
+    float ax = abs(d.x);
+    float ay = abs(d.y);
+    float major = max(ax, ay);
+    float radius = sqrt((ax * ax + ay * ay) / (1.0f + d.z));
+    float minor = radius * octantAngle(major > 0.0f ? min(ax, ay) / major : 0.0f);
+    float px = ax > ay ? radius : minor;
+    float py = ax > ay ? minor : radius;
+    float half_ = 0.5f * float(n);
+    int x = clamp(int(half_ + half_ * (d.x < 0.0f ? -px : px)), 0, n - 1);
+    int y = clamp(int(half_ + half_ * (d.y < 0.0f ? -py : py)), 0, n - 1);
     return y * n + x;
 }
 

@@ -216,7 +216,8 @@ def test_lists_what_it_would_measure():
 
 
 def test_shipped_sweeps_are_whole():
-    sweeps = sorted((Path(os.environ["KESTREL_SOURCE"]) / "graphs" / "sweeps").glob("*.json"))
+    folder_ = Path(os.environ["KESTREL_SOURCE"]) / "graphs" / "sweeps"
+    sweeps = [sweep for sweep in sorted(folder_.glob("*.json")) if sweep.stem != "schema"]
     names = [sweep.stem for sweep in sweeps]
     for name in ["ambient_occlusion", "antialiasing", "denoising", "glossy", "indirect", "large_scene", "refresh",
                  "roma_table2", "snap", "soft_shadow", "subdivision"]:

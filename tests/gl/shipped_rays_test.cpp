@@ -76,6 +76,37 @@ TEST_F(Rays, QueriesAgreeWithEmbree) {
     }
 }
 
+// The tracer that looks at nothing answers every ray alike, in the scene's measure.
+TEST_F(Rays, TheConstantTracerAnswersAlike) {
+    std::string text(readText(shareFolder() / "graphs/ray_query.json"));
+    text.insert(text.find("\"by_bvh\": {"), "\"constant\": { \"type\": \"ConstantTracer\" }, ");
+    for (const float scale : {1e-4f, 1.0f, 1e4f}) {
+        for (const float distance : {0.0f, 0.5f}) {
+            Graph graph = parseGraph(text, "ray_query.json");
+            applySetting(graph, shipped(), "by_bvh.tracer=constant.tracer");
+            applySetting(graph, shipped(), "by_bvh.query=closest");
+            applySetting(graph, shipped(), fmt::format("constant.distance={}", distance));
+            graph.outputs = {{{"rays", "rays"}, {}}, {{"by_bvh", "distance"}, {}}};
+            const Scene scene = transformed("builtin:cornell", glm::scale(glm::dmat4(1), glm::dvec3(scale)));
+            Renderer made = renderer(graph, scene);
+            made.frame();
+            const auto rays = as<shared::RayRecord>(made.readBytes({"rays", "rays"}));
+            const auto found = as<float>(made.readBytes({"by_bvh", "distance"}));
+            const float expected = distance * gatherFacts(scene).sphere.radius;
+            size_t traced = 0;
+            for (size_t i = 0; i < found.size(); ++i) {
+                const bool met = (rays[i].flags & 1u) != 0 && distance > 0;
+                traced += met ? 1 : 0;
+                if (met)
+                    ASSERT_NEAR(found[i], expected, 1e-6f * expected);
+                else
+                    ASSERT_TRUE(std::isinf(found[i]));
+            }
+            EXPECT_EQ(traced > 0, distance > 0);
+        }
+    }
+}
+
 TEST_F(Rays, EveryHitIsCountedAsByEmbree) {
     if (shipped().find("ReferenceAmbientOcclusion") == nullptr) GTEST_SKIP() << "Embree is not built in";
     const Scene scene = loadScene("builtin:lattice?detail=0.1");

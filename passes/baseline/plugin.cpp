@@ -1,0 +1,4 @@
+#include "plugin/plugin.h"
+#include "constant_tracer.h"
+
+KESTREL_PLUGIN { registry.add(kestrel::ConstantTracer::type()); }
