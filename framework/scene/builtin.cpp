@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "scene/builtin/scenes.h"
 #include "scene/builtin/split.h"
+#include "scene/builtin/surround.h"
 #include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
@@ -38,10 +39,11 @@ std::vector<std::string> names() {
     return all;
 }
 
-// What stands behind '?': "detail=0.1&split=4".
+// What stands behind '?': "detail=0.1&split=4&extent=16".
 struct Query {
     double detail = 1;
     int split = 1;
+    double extent = 1;
 };
 
 // The whole of `text` as a number within the range.
@@ -74,10 +76,12 @@ Query parseQuery(const std::string& source, std::string_view text) {
             query.detail = parseNumber(source, key, value, 0.01, 4.0, "number");
         } else if (key == "split") {
             query.split = parseNumber(source, key, value, 1, 64, "whole number");
+        } else if (key == "extent") {
+            query.extent = parseNumber(source, key, value, 1.0, 1000.0, "number");
         } else {
-            throw InputError(
-                fmt::format("{}: unknown property '{}' of a built-in scene{}; there are: detail, split",
-                            source, key, didYouMean(key, {"detail", "split"})));
+            throw InputError(fmt::format(
+                "{}: unknown property '{}' of a built-in scene{}; there are: detail, split, extent", source,
+                key, didYouMean(key, {"detail", "split", "extent"})));
         }
         seen.push_back(key);
     }
@@ -111,6 +115,7 @@ Scene builtinScene(const std::string& source) {
         } catch (const InputError& error) {
             throw InputError(fmt::format("{}: {}", source, error.what()));
         }
+        builtin::surround(scene, query.extent);
         scene.name = std::string(prefix) + name;
         scene.source = source;
         return scene;

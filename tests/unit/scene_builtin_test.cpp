@@ -382,6 +382,21 @@ TEST(BuiltinSplit, SharesTheVerticesOfEdges) {
     EXPECT_LT(facts.vertices, facts.triangles * 11 / 20);
 }
 
+TEST(Builtin, ExtentMakesTheSceneTheMiddleOfALargerOne) {
+    for (const char* name : {"blob", "hall", "skinned"}) {
+        SCOPED_TRACE(name);
+        const Scene plain = built(name, "?detail=0.1"), large = built(name, "?detail=0.1&extent=16");
+        const SceneFacts before = gatherFacts(plain), after = gatherFacts(large);
+        EXPECT_EQ(after.triangles, before.triangles + 16);
+        EXPECT_GT(after.sphere.radius, 15 * before.sphere.radius);
+        EXPECT_LT(after.sphere.radius, 24 * before.sphere.radius); // the box's sphere: its diagonal
+        const glm::vec3 moved(large.origin + glm::dvec3(after.sphere.centre) - plain.origin -
+                              glm::dvec3(before.sphere.centre));
+        EXPECT_LT(glm::length(moved), 0.25f * before.sphere.radius);
+        EXPECT_EQ(gatherFacts(built(name, "?detail=0.1&extent=1")).triangles, before.triangles);
+    }
+}
+
 std::string messageOf(const std::string& source) {
     try {
         (void)builtinScene(source);
@@ -401,6 +416,8 @@ TEST(Builtin, MistakesAreNamed) {
     for (const char* value : {"split=", "split", "split=0", "split=65", "split=1.5", "detail=1&split=x"})
         EXPECT_THAT(messageOf(std::string("builtin:blob?") + value), HasSubstr("whole number from 1 to 64"))
             << value;
+    for (const char* value : {"extent=", "extent=0.5", "extent=1001", "extent=inf"})
+        EXPECT_THAT(messageOf(std::string("builtin:blob?") + value), HasSubstr("from 1 to 1000")) << value;
     EXPECT_THAT(messageOf("builtin:blob?detail=1&split=2&detail=2"), HasSubstr("'detail' is there twice"));
     EXPECT_THAT(messageOf("builtin:blob?split=2&"), HasSubstr("unknown property ''"));
     EXPECT_THAT(messageOf("builtin:hall?detail=4&split=64"), HasSubstr("at most"));
