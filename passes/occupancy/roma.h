@@ -23,7 +23,7 @@ public:
     int angular = 4;
     int iterations = 8;
     // The best of a sweep of both on `blob` (FLIP against Embree at 64 frames); the paper's 1.5 and 0 lose
-    // more of the close occluders. Scenes of thin parts far from each other do better with a greater offset.
+    // more of the close occluders.
     float offset = 0.5f;
     float skip = 2;
     bool resample = true;

@@ -14,8 +14,8 @@ float viewDepth(ViewData view, float depth) {
     return (view.corner.w * depth + view.rightward.w) / (view.upward.w * depth + view.ahead.w);
 }
 
-// Render-space position of a depth at a pixel coordinate. By a ray from the eye: two matrices in its place took a fifth of
-// the time of an effect with one ray a pixel.
+// Render-space position of a depth at a pixel coordinate. By a ray from the eye: worked out by two matrices
+// it took a fifth of the time of an effect with one ray a pixel.
 vec3 positionFromDepth(ViewData view, vec2 pixel, float depth) {
     float z = viewDepth(view, depth);
     vec3 way = view.corner.xyz + pixel.x * view.rightward.xyz + pixel.y * view.upward.xyz;

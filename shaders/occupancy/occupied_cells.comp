@@ -18,7 +18,7 @@ layout(std140) uniform Grid { OccupancyGrid grid; };
 uniform uint mapCount; // that are made in this frame
 
 // Whether scattering so many cells takes less time than visiting all that a map has in the box. On a CPU driver a cell to
-// scatter costs as much as 24 to visit, and as a column to begin with (measured on seven scenes of 17 to 230 thousand cells).
+// scatter costs as much as 24 to visit, and as a column to begin with (measured on six scenes of 17 to 230 thousand cells).
 bool worthScattering(uint count) {
     vec3 size = grid.high - grid.low;
     return float(count) <= float(RESOLUTION * RESOLUTION) + size.x * size.y * size.z / 24.0;
