@@ -5,6 +5,11 @@ target_compile_options(kestrel_options INTERFACE
     # The CPU oracles must round as the shaders do: no fused multiply-add behind our back.
     -ffp-contract=off)
 
+# GCC 12 sees overlapping copies in std::string where there are none (GCC bug 105651).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(kestrel_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)
+endif()
+
 # Two files in one group: a local name that hides the other file's is no mistake, and a class with members of
 # unnamed-namespace types is still seen by its own file alone.
 if(KESTREL_UNITY)
