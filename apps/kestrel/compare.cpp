@@ -3,12 +3,15 @@
 #include "image/colormap.h"
 #include "image/error_figures.h"
 #include "image/io.h"
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 
@@ -17,23 +20,24 @@ namespace {
 
 struct Metric {
     std::string_view name;  // in a limit
-    std::string_view title; // in the table
+    std::string_view title; // in the table of one test
     double (*value)(const ErrorFigures&);
     bool greaterIsBetter = false;
+    std::string_view column = {}; // in the table of several tests; empty: not in it
 };
 
 constexpr std::array<Metric, 10> metrics{
-    {{"mse", "MSE", [](const ErrorFigures& f) { return f.mse; }},
+    {{"mse", "MSE", [](const ErrorFigures& f) { return f.mse; }, false, "MSE"},
      {"rmse", "RMSE", [](const ErrorFigures& f) { return f.rmse; }},
-     {"psnr", "PSNR (dB)", [](const ErrorFigures& f) { return f.psnr; }, true},
-     {"ssim", "SSIM", [](const ErrorFigures& f) { return f.ssim; }, true},
-     {"flip.mean", "FLIP mean", [](const ErrorFigures& f) { return f.flip.mean; }},
+     {"psnr", "PSNR (dB)", [](const ErrorFigures& f) { return f.psnr; }, true, "PSNR (dB)"},
+     {"ssim", "SSIM", [](const ErrorFigures& f) { return f.ssim; }, true, "SSIM"},
+     {"flip.mean", "FLIP mean", [](const ErrorFigures& f) { return f.flip.mean; }, false, "FLIP mean"},
      {"flip.weighted_median", "FLIP weighted median",
-      [](const ErrorFigures& f) { return f.flip.weightedMedian; }},
+      [](const ErrorFigures& f) { return f.flip.weightedMedian; }, false, "FLIP median"},
      {"flip.q1", "FLIP weighted 1st quartile", [](const ErrorFigures& f) { return f.flip.q1; }},
      {"flip.q3", "FLIP weighted 3rd quartile", [](const ErrorFigures& f) { return f.flip.q3; }},
      {"flip.min", "FLIP minimum", [](const ErrorFigures& f) { return f.flip.min; }},
-     {"flip.max", "FLIP maximum", [](const ErrorFigures& f) { return f.flip.max; }}}};
+     {"flip.max", "FLIP maximum", [](const ErrorFigures& f) { return f.flip.max; }, false, "FLIP max"}}};
 
 struct Limit {
     std::string text; // the metric as the user named it
@@ -91,7 +95,10 @@ std::optional<std::string> missed(const Limit& limit, const ErrorFigures& figure
                        greater ? "below the minimum" : "above the maximum", limit.value);
 }
 
-Image readMask(const std::filesystem::path& file) { return convertChannels(readImage(file), 1); }
+struct Measured {
+    std::string test;
+    ErrorFigures figures;
+};
 
 void requireSameSizes(const Image& reference, const Image& other, const CompareOptions& options,
                       const std::filesystem::path& otherFile) {
@@ -101,24 +108,84 @@ void requireSameSizes(const Image& reference, const Image& other, const CompareO
                                  options.reference.string(), reference.sizeText()));
 }
 
-bool comparesAsHdr(const CompareOptions& options) {
-    const bool reference = holdsHighDynamicRange(imageFormat(options.reference));
-    const bool test = holdsHighDynamicRange(imageFormat(options.test));
-    if (reference != test)
-        throw InputError(
-            Location{options.test.string()},
-            fmt::format("cannot be compared with {}: one holds linear values (.exr, .hdr), the other "
-                        "code values (.png)",
-                        options.reference.string()));
-    return reference;
+void requireSameKind(const Picture& reference, const Picture& test, const CompareOptions& options,
+                     const std::filesystem::path& testFile) {
+    if (holdsHighDynamicRange(reference.format) != holdsHighDynamicRange(test.format))
+        throw InputError(Location{testFile.string()},
+                         fmt::format("cannot be compared with {}: one holds linear values (EXR, HDR), the "
+                                     "other code values (PNG)",
+                                     options.reference.string()));
 }
 
-void printTable(const ErrorFigures& figures, const CompareOptions& options, bool hdr) {
-    fmt::print("{} against {}, {}{}\n", options.test.string(), options.reference.string(),
-               hdr ? "HDR" : "LDR",
-               options.mask.empty() ? "" : ", where " + options.mask.string() + " > 0.5");
+// The file of a test's heat map: "{}" in the pattern is the test's name, and its layer's.
+std::string heatMapName(const std::string& pattern, const std::filesystem::path& test) {
+    std::string name = pattern;
+    const ImageName parts = imageName(test);
+    std::string stem = parts.file.stem().string();
+    if (!parts.layer.empty()) stem += "." + parts.layer;
+    std::replace(stem.begin(), stem.end(), '/', '_');
+    for (std::size_t at = name.find("{}"); at != std::string::npos; at = name.find("{}", at + stem.size()))
+        name.replace(at, 2, stem);
+    return name;
+}
+
+// Before the long work: whether every test's heat map has a file of its own that can be written.
+void checkHeatMaps(const CompareOptions& options) {
+    if (options.heatMap.empty()) return;
+    static_cast<void>(imageFormat(std::filesystem::path(options.heatMap)));
+    std::map<std::string, std::string> owners;
+    for (const std::filesystem::path& test : options.tests) {
+        const std::string name = heatMapName(options.heatMap, test);
+        const auto [owner, fresh] = owners.emplace(name, test.string());
+        if (fresh) continue;
+        if (options.heatMap.find("{}") == std::string::npos)
+            throw InputError(fmt::format("--heatmap {}: for several tests it needs '{{}}' in its name, which "
+                                         "stands for the test's",
+                                         options.heatMap));
+        throw InputError(fmt::format("--heatmap {}: the tests {} and {} would both write {}", options.heatMap,
+                                     owner->second, test.string(), name));
+    }
+}
+
+void printFigures(const ErrorFigures& figures, const CompareOptions& options, const std::string& head) {
+    fmt::print("{} against {}\n", options.tests[0].string(), head);
     for (const Metric& metric : metrics)
         fmt::print("  {:<28}{:>12.6g}\n", metric.title, metric.value(figures));
+}
+
+void printRows(const std::vector<Measured>& measured, const std::string& head) {
+    std::size_t width = 4;
+    for (const Measured& one : measured) width = std::max(width, one.test.size());
+    fmt::print("against {}\n{:<{}}", head, "test", width);
+    for (const Metric& metric : metrics)
+        if (!metric.column.empty()) fmt::print("{:>13}", metric.column);
+    for (const Measured& one : measured) {
+        fmt::print("\n{:<{}}", one.test, width);
+        for (const Metric& metric : metrics)
+            if (!metric.column.empty()) fmt::print("{:>13.6g}", metric.value(one.figures));
+    }
+    fmt::print("\n");
+}
+
+void print(const std::vector<Measured>& measured, const CompareOptions& options, bool hdr) {
+    const bool several = options.tests.size() > 1;
+    if (options.json && several) {
+        nlohmann::ordered_json all = nlohmann::ordered_json::array();
+        for (const Measured& one : measured) {
+            nlohmann::ordered_json object{{"test", one.test}};
+            object.update(nlohmann::ordered_json::parse(toJson(one.figures)));
+            all.push_back(std::move(object));
+        }
+        fmt::print("{}\n", all.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    } else if (options.json) {
+        fmt::print("{}\n", toJson(measured[0].figures));
+    } else {
+        const std::string head =
+            fmt::format("{}, {}{}", options.reference.string(), hdr ? "HDR" : "LDR",
+                        options.mask.empty() ? "" : ", where " + options.mask.string() + " > 0.5");
+        several ? printRows(measured, head) : printFigures(measured[0].figures, options, head);
+    }
+    std::fflush(stdout);
 }
 
 void writeHeatMap(const std::filesystem::path& file, const Image& errors) {
@@ -126,37 +193,64 @@ void writeHeatMap(const std::filesystem::path& file, const Image& errors) {
     writeImage(file, values ? errors : heatMap(errors), Encoding::Linear);
 }
 
+// The reference and the mask, which serve every test.
+struct Measure {
+    const CompareOptions& options;
+    Picture reference;
+    std::optional<Image> mask;
+
+    explicit Measure(const CompareOptions& chosen)
+        : options(chosen)
+        , reference(readPicture(chosen.reference)) {
+        if (chosen.mask.empty()) return;
+        mask = convertChannels(readImage(chosen.mask), 1);
+        requireSameSizes(reference.image, *mask, chosen, chosen.mask);
+    }
+    [[nodiscard]] bool hdr() const { return holdsHighDynamicRange(reference.format); }
+
+    [[nodiscard]] ErrorFigures operator()(const std::filesystem::path& test) const {
+        const Picture picture = readPicture(test);
+        requireSameKind(reference, picture, options, test);
+        requireSameSizes(reference.image, picture.image, options, test);
+        Image errors;
+        const ErrorFigures figures = measureError(reference.image, picture.image,
+                                                  {.hdr = hdr(), .mask = mask ? &*mask : nullptr}, &errors);
+        if (!options.heatMap.empty()) writeHeatMap(heatMapName(options.heatMap, test), errors);
+        return figures;
+    }
+};
+
+// Whether each test keeps each limit; a line about each that does not.
+bool keepsLimits(const std::vector<Measured>& measured, const std::vector<Limit>& limits) {
+    bool kept = true;
+    for (const Measured& one : measured) {
+        std::vector<std::string> complaints;
+        for (const Limit& limit : limits)
+            if (const auto complaint = missed(limit, one.figures)) complaints.push_back(*complaint);
+        if (complaints.empty()) continue;
+        kept = false;
+        fmt::print(stderr, "{}: {}\n", one.test, fmt::join(complaints, "; "));
+    }
+    return kept;
+}
+
 } // namespace
 
 int compareCommand(const CompareOptions& options) {
     const std::vector<Limit> limits = parseLimits(options.limits);
-    const bool hdr = comparesAsHdr(options);
-    if (!options.heatMap.empty()) static_cast<void>(imageFormat(options.heatMap)); // before the long work
-    const Image reference = readImage(options.reference);
-    const Image test = readImage(options.test);
-    requireSameSizes(reference, test, options, options.test);
-    std::optional<Image> mask;
-    if (!options.mask.empty()) {
-        mask = readMask(options.mask);
-        requireSameSizes(reference, *mask, options, options.mask);
-    }
-
-    Image errors;
-    const ErrorFigures figures =
-        measureError(reference, test, {.hdr = hdr, .mask = mask ? &*mask : nullptr}, &errors);
-    if (!options.heatMap.empty()) writeHeatMap(options.heatMap, errors);
-    if (options.json)
-        fmt::print("{}\n", toJson(figures));
-    else
-        printTable(figures, options, hdr);
-    std::fflush(stdout);
-
-    std::vector<std::string> complaints;
-    for (const Limit& limit : limits)
-        if (const auto complaint = missed(limit, figures)) complaints.push_back(*complaint);
-    if (complaints.empty()) return static_cast<int>(ExitStatus::Done);
-    fmt::print(stderr, "{}: {}\n", options.test.string(), fmt::join(complaints, "; "));
-    return static_cast<int>(ExitStatus::MeasureFailed);
+    checkHeatMaps(options);
+    const Measure measure(options);
+    std::vector<Measured> measured;
+    std::vector<Problem> problems;
+    for (const std::filesystem::path& test : options.tests) try {
+            measured.push_back({test.string(), measure(test)});
+        } catch (const InputError& error) {
+            problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+        }
+    if (!measured.empty()) print(measured, options, measure.hdr());
+    const bool kept = keepsLimits(measured, limits);
+    if (!problems.empty()) throw InputError(std::move(problems));
+    return static_cast<int>(kept ? ExitStatus::Done : ExitStatus::MeasureFailed);
 }
 
 } // namespace kestrel

@@ -25,11 +25,16 @@ find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(glm REQUIRED)
+# Debian's Imath tells at length that its Python module is not installed.
+set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
+find_package(OpenEXR QUIET)
+unset(CMAKE_MESSAGE_LOG_LEVEL)
+if(NOT OpenEXR_FOUND)
+    message(FATAL_ERROR "OpenEXR is missing: install libopenexr-dev")
+endif()
 
 kestrel_require_header(tinygltf tiny_gltf.h libtinygltf-dev)
 kestrel_require_library(tinygltf tinygltf libtinygltf-dev)
-kestrel_require_header(tinyexr tinyexr.h libtinyexr-dev)
-kestrel_require_library(tinyexr tinyexr libtinyexr-dev)
 kestrel_require_header(stb stb_image.h libstb-dev stb)
 kestrel_require_library(stb stb libstb-dev)
 

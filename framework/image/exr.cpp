@@ -1,106 +1,229 @@
+// OpenEXR pictures, read and written by the OpenEXR library.
 #include "core/check.h"
+#include "core/error.h"
 #include "core/log.h"
-#include "image/exr_layout.h"
+#include "image/exr_chroma.h"
+#include "image/exr_header.h"
+#include "image/exr_layers.h"
+#include "image/exr_stream.h"
 #include "image/formats.h"
+#include "image/primaries.h"
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <memory>
+#include <new>
 #include <string_view>
-#include <tinyexr.h>
 
 namespace kestrel::detail {
 namespace {
 
-// tinyexr's structures, freed however the function is left.
-struct Header {
-    EXRHeader value;
-    Header() { InitEXRHeader(&value); }
-    Header(const Header&) = delete;
-    Header& operator=(const Header&) = delete;
-    ~Header() { FreeEXRHeader(&value); }
-};
+int widthOf(const Imath::Box2i& window) { return window.max.x - window.min.x + 1; }
+int heightOf(const Imath::Box2i& window) { return window.max.y - window.min.y + 1; }
 
-struct Pixels {
-    EXRImage value;
-    Pixels() { InitEXRImage(&value); }
-    Pixels(const Pixels&) = delete;
-    Pixels& operator=(const Pixels&) = delete;
-    ~Pixels() { FreeEXRImage(&value); }
-};
-
-struct Message {
-    const char* text = nullptr;
-    Message() = default;
-    Message(const Message&) = delete;
-    Message& operator=(const Message&) = delete;
-    ~Message() { FreeEXRErrorMessage(text); }
-    // The library's sentence in one line.
-    [[nodiscard]] std::string line() const {
-        std::string result = text == nullptr ? "the decoder gives no reason" : text;
-        std::replace(result.begin(), result.end(), '\n', ' ');
-        while (!result.empty() && (result.back() == ' ' || result.back() == '.')) result.pop_back();
-        return result;
+std::vector<ExrPart> partsOf(const std::vector<Imf::Header>& headers) {
+    std::vector<ExrPart> parts;
+    for (const Imf::Header& header : headers) {
+        ExrPart part{header.hasName() ? header.name() : "", {}, isDeep(header)};
+        for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+            part.channels.emplace_back(channel.name());
+        parts.push_back(std::move(part));
     }
-};
-
-int find(const ExrLayout& layout, std::string_view channel) {
-    for (std::size_t i = 0; i < layout.channels.size(); ++i)
-        if (layout.channels[i].name == channel) return static_cast<int>(i);
-    return -1;
+    return parts;
 }
 
-// The positions in the file of the channels that are read, in the image's order.
-std::vector<int> chooseChannels(const ExrLayout& layout, const std::string& name) {
-    if (layout.channels.size() == 1) return {0};
-    // RGBA, RGB, RG, position or normal, grey.
-    static const std::vector<std::vector<std::string_view>> orders{
-        {"R", "G", "B", "A"}, {"R", "G", "B"}, {"R", "G"}, {"X", "Y", "Z"}, {"X", "Y"}, {"Y"}};
-    for (const auto& order : orders) {
-        std::vector<int> chosen;
-        for (const std::string_view channel : order) chosen.push_back(find(layout, channel));
-        if (std::find(chosen.begin(), chosen.end(), -1) == chosen.end()) return chosen;
-    }
-    std::vector<std::string> names;
-    for (const ExrChannel& channel : layout.channels) names.push_back("'" + channel.name + "'");
-    failImage(name, fmt::format("has the channels {}: neither RGB nor XYZ nor a single one",
-                                fmt::join(names, ", ")));
-}
-
-void warnOfOthers(const ExrLayout& layout, const std::vector<int>& chosen, const std::string& name) {
+void tellChoice(const std::vector<ExrPart>& parts, const ExrLayer& layer, const std::string& name) {
+    constexpr std::size_t most = 16; // a line that can be read
     std::vector<std::string> others;
-    for (std::size_t i = 0; i < layout.channels.size(); ++i)
-        if (std::find(chosen.begin(), chosen.end(), static_cast<int>(i)) == chosen.end())
-            others.push_back(printable(layout.channels[i].name));
-    if (!others.empty()) logWarning("{}: left out: the channels {}", name, fmt::join(others, ", "));
+    std::size_t count = 0;
+    for (std::size_t part = 0; part < parts.size(); ++part)
+        for (const std::string& channel : parts[part].channels) {
+            const bool taken = part == layer.part && std::find(layer.channels.begin(), layer.channels.end(),
+                                                               channel) != layer.channels.end();
+            if (taken || ++count > most) continue;
+            others.push_back(printable(parts.size() > 1 ? parts[part].name + "." + channel : channel));
+        }
+    if (count > most) others.push_back(fmt::format("and {} more", count - most));
+    const bool said = layer.chosen && !layer.name.empty();
+    if (said && others.empty())
+        logWarning("{}: took the layer '{}'", name, printable(layer.name));
+    else if (said)
+        logWarning("{}: took the layer '{}'; left out: the channels {}", name, printable(layer.name),
+                   fmt::join(others, ", "));
+    else if (!others.empty())
+        logWarning("{}: left out: the channels {}", name, fmt::join(others, ", "));
 }
 
-void decodePlanes(std::span<const std::byte> bytes, const std::string& name, Header& header, Pixels& pixels) {
-    const auto* file = reinterpret_cast<const unsigned char*>(bytes.data());
-    Message message;
-    EXRVersion version;
-    if (ParseEXRVersionFromMemory(&version, file, bytes.size()) != TINYEXR_SUCCESS)
-        failImage(name, "is not an EXR");
-    if (ParseEXRHeaderFromMemory(&header.value, &version, file, bytes.size(), &message.text) !=
-        TINYEXR_SUCCESS)
-        failImage(name, "is a damaged EXR: " + message.line());
-    for (int channel = 0; channel < header.value.num_channels; ++channel)
-        if (header.value.pixel_types[channel] == TINYEXR_PIXELTYPE_HALF)
-            header.value.requested_pixel_types[channel] = TINYEXR_PIXELTYPE_FLOAT;
-    // The order of the lines in the file does not turn the picture over, as the decoder would have it.
-    header.value.line_order = 0;
-    // With this number the library frees every plane where it fails.
-    pixels.value.num_channels = header.value.num_channels;
-    if (LoadEXRImageFromMemory(&pixels.value, &header.value, file, bytes.size(), &message.text) !=
-        TINYEXR_SUCCESS) {
-        InitEXRImage(&pixels.value); // the library has freed it, but left the pointers
-        failImage(name, "is a damaged EXR: " + message.line());
+// The picture in the display window: 0 where there are no data.
+Image inDisplayWindow(Image data, const Imf::Header& header, const std::string& name) {
+    const Imath::Box2i& from = header.dataWindow();
+    const Imath::Box2i& to = header.displayWindow();
+    if (from == to) return data;
+    Image picture(widthOf(to), heightOf(to), data.channels);
+    const Imath::V2i begin(std::max(from.min.x, to.min.x), std::max(from.min.y, to.min.y));
+    const Imath::V2i end(std::min(from.max.x, to.max.x) + 1, std::min(from.max.y, to.max.y) + 1);
+    if (begin.x >= end.x || begin.y >= end.y) {
+        logWarning("{}: is black: its pixels lie outside of its display window", name);
+        return picture;
     }
+    for (int y = begin.y; y < end.y; ++y)
+        std::copy_n(data.values.begin() +
+                        static_cast<std::ptrdiff_t>(data.index(begin.x - from.min.x, y - from.min.y)),
+                    (end.x - begin.x) * data.channels,
+                    picture.values.begin() +
+                        static_cast<std::ptrdiff_t>(picture.index(begin.x - to.min.x, y - to.min.y)));
+    return picture;
 }
+
+class ExrReader {
+public:
+    ExrReader(std::span<const std::byte> bytes, const Imf::Header& header, const ExrLayer& layer,
+              const std::string& name)
+        : stream_(bytes)
+        , header_(header)
+        , layer_(layer)
+        , name_(name)
+        , data_(header.dataWindow()) {}
+
+    Image read() {
+        checkSampling();
+        const int channels = static_cast<int>(layer_.channels.size());
+        for (const Imath::Box2i& window : {data_, header_.displayWindow()})
+            requireImageSize(widthOf(window), heightOf(window), channels, name_);
+        Image image = readPixels();
+        if (image.channels >= 3 && colours()) convertColours(image);
+        return inDisplayWindow(std::move(image), header_, name_);
+    }
+
+private:
+    [[nodiscard]] const Imf::Channel& channel(const std::string& wanted) const {
+        return header_.channels()[wanted];
+    }
+
+    // Whether the channels are colours and not a position or a normal.
+    [[nodiscard]] bool colours() const {
+        const std::string& first = layer_.channels.front();
+        return layer_.chroma || first.ends_with('R') || first.ends_with('r');
+    }
+
+    void checkSampling() const {
+        for (std::size_t i = 0; i < layer_.channels.size(); ++i) {
+            const Imf::Channel& read = channel(layer_.channels[i]);
+            const bool mayBeHalved = layer_.chroma && (i == 1 || i == 2);
+            const int most = mayBeHalved ? 2 : 1;
+            if (read.xSampling < 1 || read.xSampling > most || read.ySampling < 1 || read.ySampling > most)
+                failImage(name_, fmt::format("is an EXR whose channel '{}' is subsampled {}x{}, which is not "
+                                             "read",
+                                             layer_.channels[i], read.xSampling, read.ySampling));
+        }
+        if (!layer_.chroma) return;
+        const Imf::Channel& red = channel(layer_.channels[1]);
+        const Imf::Channel& blue = channel(layer_.channels[2]);
+        if (red.xSampling != blue.xSampling || red.ySampling != blue.ySampling)
+            failImage(name_, "is an EXR whose chroma channels are subsampled differently, which is not read");
+    }
+
+    // Memory for the pixels is set aside once it is known that the file has all of them.
+    Image readPixels() {
+        try {
+            Imf::MultiPartInputFile file(stream_, 0, false);
+            Imf::InputPart part(file, static_cast<int>(layer_.part));
+            if (!part.isComplete()) failImage(name_, "is a truncated EXR: not all of its pixels are there");
+            return layer_.chroma ? readChroma(part) : readChannels(part);
+        } catch (const Error&) {
+            throw;
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception& problem) {
+            if (stream_.ranOut()) failImage(name_, "is a truncated EXR");
+            failImage(name_, "is a damaged EXR: " + exrReason(problem));
+        }
+    }
+
+    void readInto(Imf::InputPart& part, const Imf::FrameBuffer& pixels) const {
+        part.setFrameBuffer(pixels);
+        part.readPixels(data_.min.y, data_.max.y);
+    }
+
+    Image readChannels(Imf::InputPart& part) const {
+        Image image(widthOf(data_), heightOf(data_), static_cast<int>(layer_.channels.size()));
+        const std::size_t pixelBytes = layer_.channels.size() * sizeof(float);
+        Imf::FrameBuffer pixels;
+        for (std::size_t i = 0; i < layer_.channels.size(); ++i)
+            pixels.insert(layer_.channels[i],
+                          Imf::Slice::Make(Imf::FLOAT, image.values.data() + i, data_, pixelBytes,
+                                           pixelBytes * static_cast<std::size_t>(image.width)));
+        readInto(part, pixels);
+        return image;
+    }
+
+    Image readChroma(Imf::InputPart& part) const {
+        const Imf::Channel& chroma = channel(layer_.channels[1]);
+        ChromaPicture picture{widthOf(data_), heightOf(data_), chroma.xSampling, chroma.ySampling, {}};
+        picture.pixels.assign(static_cast<std::size_t>(picture.width) *
+                                  static_cast<std::size_t>(picture.height),
+                              Imf::Rgba(0, 0, 0, 1));
+        Imf::FrameBuffer pixels;
+        Imf::Rgba& first = picture.pixels.front();
+        const std::array<half*, 4> places{&first.g, &first.r, &first.b, &first.a};
+        for (std::size_t i = 0; i < layer_.channels.size(); ++i) {
+            const Imf::Channel& read = channel(layer_.channels[i]);
+            const auto stepX = static_cast<std::size_t>(read.xSampling);
+            const auto stepY = static_cast<std::size_t>(read.ySampling);
+            pixels.insert(
+                layer_.channels[i],
+                Imf::Slice::Make(Imf::HALF, places[i], data_, sizeof(Imf::Rgba) * stepX,
+                                 sizeof(Imf::Rgba) * stepY * static_cast<std::size_t>(picture.width),
+                                 read.xSampling, read.ySampling));
+        }
+        readInto(part, pixels);
+        chromaToRgb(picture, chromaticities());
+        Image image(picture.width, picture.height, static_cast<int>(layer_.channels.size()));
+        const auto channels = layer_.channels.size();
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+            const Imf::Rgba& pixel = picture.pixels[i];
+            const std::array<half, 4> values{pixel.r, pixel.g, pixel.b, pixel.a};
+            for (std::size_t c = 0; c < channels; ++c) image.values[i * channels + c] = values[c];
+        }
+        return image;
+    }
+
+    [[nodiscard]] Imf::Chromaticities chromaticities() const {
+        return Imf::hasChromaticities(header_) ? Imf::chromaticities(header_) : Imf::Chromaticities();
+    }
+
+    void convertColours(Image& image) const {
+        if (!Imf::hasChromaticities(header_)) return;
+        const Imf::Chromaticities& stated = Imf::chromaticities(header_);
+        const auto point = [](const Imath::V2f& xy) {
+            return glm::dvec2(static_cast<double>(xy.x), static_cast<double>(xy.y));
+        };
+        const Primaries primaries{point(stated.red), point(stated.green), point(stated.blue),
+                                  point(stated.white)};
+        if (alike(primaries, rec709)) return;
+        const auto matrix = toRec709(primaries);
+        if (!matrix) {
+            logWarning("{}: its chromaticities span no colours and are not used: {}", name_,
+                       describe(primaries));
+            return;
+        }
+        transformColours(image, *matrix);
+        logWarning("{}: converted to the primaries of Rec. 709 from {}", name_, describe(primaries));
+    }
+
+    ExrInput stream_;
+    const Imf::Header& header_;
+    const ExrLayer& layer_;
+    const std::string& name_;
+    Imath::Box2i data_;
+};
 
 std::vector<std::string_view> channelNames(int channels) {
     static constexpr std::array<std::string_view, 4> names{"R", "G", "B", "A"};
@@ -110,84 +233,35 @@ std::vector<std::string_view> channelNames(int channels) {
 
 } // namespace
 
-Image decodeExr(std::span<const std::byte> bytes, const std::string& name) {
-    const ExrLayout layout = scanExr(bytes, name);
-    const std::vector<int> chosen = chooseChannels(layout, name);
-    for (const int channel : chosen)
-        if (layout.channels[static_cast<std::size_t>(channel)].type == ExrPixelType::Uint)
-            failImage(name, fmt::format("holds integers in the channel '{}'; half and float are read",
-                                        layout.channels[static_cast<std::size_t>(channel)].name));
-    // The decoder of PIZ takes the length of its tables (at most 8192 bytes of bitmap) from the data without
-    // asking how much data there is: with zeros behind the file it reads those.
-    std::vector<std::byte> padded;
-    if (layout.piz) {
-        padded.assign(bytes.begin(), bytes.end());
-        padded.resize(padded.size() + 65536);
-        bytes = padded;
-    }
-    Header header;
-    Pixels pixels;
-    try {
-        decodePlanes(bytes, name, header, pixels);
-    } catch (const std::out_of_range& problem) { // the decoder's own bounds checks
-        failImage(name, fmt::format("is a damaged EXR: {}", problem.what()));
-    }
-    KESTREL_CHECK_EQ(header.value.num_channels, static_cast<int>(layout.channels.size()));
-    KESTREL_CHECK_EQ(pixels.value.width, layout.width);
-    KESTREL_CHECK_EQ(pixels.value.height, layout.height);
-    warnOfOthers(layout, chosen, name);
-
-    Image image(layout.width, layout.height, static_cast<int>(chosen.size()));
-    for (std::size_t channel = 0; channel < chosen.size(); ++channel) {
-        const auto* plane = reinterpret_cast<const float*>(pixels.value.images[chosen[channel]]);
-        for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel)
-            image.values[pixel * chosen.size() + channel] = plane[pixel];
-    }
+Image decodeExr(std::span<const std::byte> bytes, const std::string& name, const std::string& layer) {
+    const std::vector<Imf::Header> headers = readExrHeaders(bytes, name);
+    const std::vector<ExrPart> parts = partsOf(headers);
+    const ExrLayer chosen = chooseLayer(parts, layer, name);
+    Image image = ExrReader(bytes, headers[chosen.part], chosen, name).read();
+    if (layer.empty()) tellChoice(parts, chosen, name);
     return image;
 }
 
 std::vector<std::byte> encodeExr(const Image& image) {
-    const auto channels = static_cast<std::size_t>(image.channels);
-    // The file lists channels by the alphabet.
     const std::vector<std::string_view> names = channelNames(image.channels);
-    std::vector<std::size_t> order(channels);
-    for (std::size_t i = 0; i < channels; ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return names[a] < names[b]; });
-
-    std::vector<std::vector<float>> planes(channels, std::vector<float>(image.pixelCount()));
-    std::vector<unsigned char*> pointers(channels);
-    std::vector<EXRChannelInfo> infos(channels);
-    std::vector<int> types(channels, TINYEXR_PIXELTYPE_FLOAT);
-    for (std::size_t i = 0; i < channels; ++i) {
-        for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel)
-            planes[i][pixel] = image.values[pixel * channels + order[i]];
-        pointers[i] = reinterpret_cast<unsigned char*>(planes[i].data());
-        infos[i] = {};
-        names[order[i]].copy(infos[i].name, sizeof infos[i].name - 1);
+    const std::size_t pixelBytes = names.size() * sizeof(float);
+    Imf::Header header(image.width, image.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer pixels;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const std::string channel(names[i]);
+        header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+        pixels.insert(channel,
+                      Imf::Slice::Make(Imf::FLOAT, image.values.data() + i, header.dataWindow(), pixelBytes,
+                                       pixelBytes * static_cast<std::size_t>(image.width)));
     }
-
-    EXRHeader header;
-    InitEXRHeader(&header);
-    header.num_channels = image.channels;
-    header.channels = infos.data();
-    header.pixel_types = types.data();
-    header.requested_pixel_types = types.data();
-    header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
-    EXRImage pixels;
-    InitEXRImage(&pixels);
-    pixels.images = pointers.data();
-    pixels.width = image.width;
-    pixels.height = image.height;
-    pixels.num_channels = image.channels;
-
-    Message message;
-    unsigned char* memory = nullptr;
-    const std::size_t size = SaveEXRImageToMemory(&pixels, &header, &memory, &message.text);
-    const std::unique_ptr<unsigned char, decltype(&std::free)> owner(memory, std::free);
-    KESTREL_CHECK_NE(size, std::size_t{0});
-    std::vector<std::byte> bytes(size);
-    std::memcpy(bytes.data(), memory, size);
-    return bytes;
+    ExrOutput stream;
+    {
+        Imf::OutputFile file(stream, header, 0);
+        file.setFrameBuffer(pixels);
+        file.writePixels(image.height);
+    }
+    return stream.take();
 }
 
 } // namespace kestrel::detail

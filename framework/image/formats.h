@@ -9,10 +9,10 @@
 
 namespace kestrel::detail {
 
-// Decoders throw InputError whose location is `name`; see readImage for what they give.
+// Decoders throw InputError whose location is `name`; see readPicture for what they give.
 Image decodePng(std::span<const std::byte> bytes, const std::string& name);
 Image decodeHdr(std::span<const std::byte> bytes, const std::string& name);
-Image decodeExr(std::span<const std::byte> bytes, const std::string& name);
+Image decodeExr(std::span<const std::byte> bytes, const std::string& name, const std::string& layer);
 
 std::vector<std::byte> encodePng(const Image& image, Encoding encoding);
 std::vector<std::byte> encodeHdr(const Image& image);

@@ -4,8 +4,10 @@
 #include "core/files.h"
 #include "image/formats.h"
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fmt/format.h>
+#include <string_view>
 
 namespace kestrel {
 namespace detail {
@@ -40,10 +42,47 @@ void appendBytes(void* context, void* data, int size) {
 
 } // namespace detail
 
-ImageFormat imageFormat(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
+namespace {
+
+struct Beginning {
+    std::string_view bytes;
+    std::string_view kind;
+};
+using namespace std::string_view_literals;
+// Kinds of pictures that people have, by how their files begin.
+constexpr std::array<Beginning, 12> others{{{"\xff\xd8\xff"sv, "a JPEG picture"},
+                                            {"GIF8"sv, "a GIF picture"},
+                                            {"II*\0"sv, "a TIFF picture"},
+                                            {"MM\0*"sv, "a TIFF picture"},
+                                            {"BM"sv, "a BMP picture"},
+                                            {"RIFF"sv, "a WebP picture or another RIFF file"},
+                                            {"PF\n"sv, "a PFM picture"},
+                                            {"Pf\n"sv, "a PFM picture"},
+                                            {"P6"sv, "a PPM picture"},
+                                            {"P5"sv, "a PGM picture"},
+                                            {"DDS "sv, "a DDS texture"},
+                                            {"8BPS"sv, "a Photoshop document"}}};
+
+std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return text;
+}
+
+bool isFile(const std::string& name) {
+    std::error_code failure;
+    const auto type = std::filesystem::status(name, failure).type();
+    return type != std::filesystem::file_type::not_found && type != std::filesystem::file_type::none &&
+           type != std::filesystem::file_type::directory;
+}
+
+// Whether `name` ends as the files do that have layers.
+bool endsAsExr(const std::string& name) { return lowerCase(name).ends_with(".exr"); }
+
+} // namespace
+
+ImageFormat imageFormat(const std::filesystem::path& file) {
+    const std::string ending = lowerCase(file.extension().string());
     if (ending == ".png") return ImageFormat::Png;
     if (ending == ".hdr") return ImageFormat::Hdr;
     if (ending == ".exr") return ImageFormat::Exr;
@@ -52,26 +91,59 @@ ImageFormat imageFormat(const std::filesystem::path& file) {
                                                                   file.extension().string()));
 }
 
-Image decodeImage(std::span<const std::byte> bytes, ImageFormat format, const std::string& name) {
+ImageFormat imageFormat(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.empty()) detail::failImage(name, "is empty");
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (text.starts_with("\x89PNG")) return ImageFormat::Png;
+    if (text.starts_with("#?")) return ImageFormat::Hdr;
+    if (text.starts_with("\x76\x2f\x31\x01")) return ImageFormat::Exr;
+    for (const Beginning& other : others)
+        if (text.starts_with(other.bytes))
+            detail::failImage(name, fmt::format("is {}; PNG, HDR and EXR are read", other.kind));
+    detail::failImage(name, "does not begin as a PNG, HDR or EXR picture does");
+}
+
+ImageName imageName(const std::filesystem::path& text) {
+    const std::string name = text.string();
+    if (isFile(name)) return {text, {}};
+    for (std::size_t colon = name.rfind(':'); colon != std::string::npos && colon > 0;
+         colon = name.rfind(':', colon - 1))
+        if (isFile(name.substr(0, colon))) return {name.substr(0, colon), name.substr(colon + 1)};
+    // No such file: the message about it names what was meant.
+    for (std::size_t colon = name.find(':'); colon != std::string::npos; colon = name.find(':', colon + 1))
+        if (endsAsExr(name.substr(0, colon))) return {name.substr(0, colon), name.substr(colon + 1)};
+    return {text, {}};
+}
+
+Picture decodePicture(std::span<const std::byte> bytes, const std::string& name, const std::string& layer) {
+    const ImageFormat format = imageFormat(bytes, name);
+    if (!layer.empty() && format != ImageFormat::Exr)
+        detail::failImage(name, fmt::format("is no EXR, so it has no layer '{}'", layer));
     switch (format) {
     case ImageFormat::Png:
-        return detail::decodePng(bytes, name);
+        return {detail::decodePng(bytes, name), format};
     case ImageFormat::Hdr:
-        return detail::decodeHdr(bytes, name);
+        return {detail::decodeHdr(bytes, name), format};
     case ImageFormat::Exr:
-        return detail::decodeExr(bytes, name);
+        return {detail::decodeExr(bytes, name, layer), format};
     }
     KESTREL_CHECK(false);
     return {};
 }
 
-Image readImage(const std::filesystem::path& file) {
-    const ImageFormat format = imageFormat(file);
+Image decodeImage(std::span<const std::byte> bytes, const std::string& name, const std::string& layer) {
+    return decodePicture(bytes, name, layer).image;
+}
+
+Picture readPicture(const ImageName& name) {
     // The greatest image that is read, uncompressed, and as much again for what else a file may hold.
     constexpr std::uintmax_t limit = 2 * sizeof(float) * maxImageValues - 1;
-    return decodeImage(readBytes(file, limit), format, file.string());
+    return decodePicture(readBytes(name.file, limit), name.file.string(), name.layer);
 }
+
+Picture readPicture(const std::filesystem::path& name) { return readPicture(imageName(name)); }
+
+Image readImage(const std::filesystem::path& name) { return readPicture(name).image; }
 
 std::vector<std::byte> encodeImage(const Image& image, ImageFormat format, Encoding encoding) {
     KESTREL_CHECK(!image.empty());

@@ -39,21 +39,23 @@ Image resampledPicture(const Image& picture) {
     return result;
 }
 
-// A picture's path is relative to the scene's folder, or to the working folder of a built-in scene, and does
-// not leave it: graphs may come from strangers.
-Image readPicture(const std::string& file, const Scene& scene) {
+// A picture's path (without the layer's name) is relative to the scene's folder, or to the working folder of
+// a built-in scene, and does not leave it: graphs may come from strangers.
+Image readSurroundings(const std::string& file, const Scene& scene) {
     if (file.empty()) throw InputError("Environment: its kind is picture, but no file is named");
     const std::filesystem::path source(scene.source);
     const bool builtin = scene.source.empty() || scene.source.starts_with("builtin:");
     const std::filesystem::path folder =
         builtin || source.parent_path().empty() ? std::filesystem::path(".") : source.parent_path();
-    const Image picture = readImage(pathInside(folder, file));
-    if (picture.channels < 3 && picture.channels != 1)
+    const std::string layer = imageName(folder / file).layer;
+    const std::string name = layer.empty() ? file : file.substr(0, file.size() - layer.size() - 1);
+    const Picture picture = readPicture(ImageName{pathInside(folder, name), layer});
+    if (picture.image.channels < 3 && picture.image.channels != 1)
         throw InputError(fmt::format("'{}' is no picture of the surroundings: it has {} channels", file,
-                                     picture.channels));
-    const Image colour = convertChannels(picture, 3);
+                                     picture.image.channels));
+    const Image colour = convertChannels(picture.image, 3);
     // An 8-bit picture holds code values.
-    return resampledPicture(holdsHighDynamicRange(imageFormat(file)) ? colour : srgbToLinear(colour));
+    return resampledPicture(holdsHighDynamicRange(picture.format) ? colour : srgbToLinear(colour));
 }
 
 } // namespace
@@ -73,10 +75,11 @@ PassType Environment::type() {
         .vector("zenith", &Environment::zenith, 0, 1e6, "radiance", "Of a gradient, straight up (+y)")
         .vector("horizon", &Environment::horizon, 0, 1e6, "radiance", "Of a gradient, level")
         .vector("ground", &Environment::ground, 0, 1e6, "radiance", "Of a gradient, below the horizon")
-        .text("file", &Environment::file,
-              "Of kind picture: a PNG, HDR or EXR of all directions (longitude along x, zenith at the top), "
-              "beside "
-              "the scene's file, or in the working folder for a built-in scene")
+        .text(
+            "file", &Environment::file,
+            "Of kind picture: a PNG, HDR or EXR of all directions (longitude along x, zenith at the top; "
+            "FILE.exr:LAYER names a layer), beside the scene's file, or in the working folder for a built-in "
+            "scene")
         .number("intensity", &Environment::intensity, 0, 1e6, "", "Factor on all of it")
         .number("rotation", &Environment::rotation, -360, 360, "degrees",
                 "Turns a picture about the vertical");
@@ -140,7 +143,7 @@ void Environment::execute(const Step& step, Commands& commands) {
     commands.uploadValue("settings",
                          shared::EnvironmentSettings{intensity * zenith, glm::radians(rotation),
                                                      intensity * level, intensity, intensity * ground, 0});
-    if (kind == Kind::Picture) commands.uploadImage("picture", readPicture(file, commands.scene()));
+    if (kind == Kind::Picture) commands.uploadImage("picture", readSurroundings(file, commands.scene()));
 }
 
 } // namespace kestrel

@@ -1,5 +1,7 @@
 // Image files put together byte by byte, right or wrong as a test wants them.
 #pragma once
+#include "image/io.h"
+#include "support/message.h"
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -79,13 +81,15 @@ inline Octets stored(const Octets& data) {
 
 // A PNG whose rows (filter bytes included) are `rows`.
 inline Bytes png(std::uint32_t width, std::uint32_t height, std::uint8_t bits, std::uint8_t colorType,
-                 const Octets& rows, const Octets& palette = {}) {
+                 const Octets& rows, const Octets& palette = {}, const Octets& transparency = {},
+                 bool interlaced = false) {
     Octets file{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     Octets header = bigEndian(width);
     append(header, bigEndian(height));
-    append(header, {bits, colorType, 0, 0, 0});
+    append(header, {bits, colorType, 0, 0, static_cast<std::uint8_t>(interlaced ? 1 : 0)});
     append(file, pngChunk("IHDR", header));
     if (!palette.empty()) append(file, pngChunk("PLTE", palette));
+    if (!transparency.empty()) append(file, pngChunk("tRNS", transparency));
     append(file, pngChunk("IDAT", stored(rows)));
     append(file, pngChunk("IEND", {}));
     return bytesOf(file);
@@ -102,6 +106,7 @@ struct ExrBuilder {
     std::uint32_t sampling = 1;
     std::optional<std::int32_t> chunkCount;
     std::optional<std::int32_t> claimedWidth;
+    std::optional<std::int32_t> claimedHeight;
     Octets chunk;
 
     ExrBuilder& half(const std::string& name, const std::vector<std::uint16_t>& values) {
@@ -129,7 +134,7 @@ struct ExrBuilder {
         const int width = static_cast<int>(count_) / height;
         for (const std::int64_t edge :
              {std::int64_t{minX}, std::int64_t{minY}, std::int64_t{minX} + claimedWidth.value_or(width) - 1,
-              std::int64_t{minY} + height - 1})
+              std::int64_t{minY} + claimedHeight.value_or(height) - 1})
             append(window, littleEndian(static_cast<std::uint64_t>(edge)));
         append(file, attribute("dataWindow", "box2i", window));
         append(file, attribute("displayWindow", "box2i", window));
@@ -227,8 +232,8 @@ inline ExrBuilder pizSample() {
 }
 
 // What decoding says of `bytes`; "no error" where they are an image.
-inline std::string decodeMessage(const Bytes& bytes, ImageFormat format) {
-    return test::messageOf([&] { decodeImage(bytes, format, "file"); });
+inline std::string decodeMessage(const Bytes& bytes) {
+    return test::messageOf([&] { decodeImage(bytes, "file"); });
 }
 
 } // namespace kestrel::test_files

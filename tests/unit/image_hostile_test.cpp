@@ -3,6 +3,7 @@
 #include "image/io.h"
 #include "support/message.h"
 #include "support/pattern.h"
+#include "unit/image_exr_writer.h"
 #include "unit/image_file_builders.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,9 +19,36 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 struct Sample {
-    ImageFormat format;
+    const char* kind;
     Bytes bytes;
 };
+
+// EXRs of every compression, in lines and tiles, one part and two, with chroma.
+void addExrSamples(std::vector<Sample>& samples) {
+    using test_files::exrFile;
+    using test_files::ExrPicture;
+    const auto data = test_files::window(0, 0, 8, 6);
+    for (int compression = Imf::NO_COMPRESSION; compression < Imf::NUM_COMPRESSION_METHODS; ++compression) {
+        ExrPicture picture{.data = data,
+                           .compression = static_cast<Imf::Compression>(compression),
+                           .planes = test_files::colourPlanes("", 0, Imf::HALF)};
+        samples.push_back({"EXR lines", exrFile(picture)});
+        if (compression > Imf::ZIP_COMPRESSION) continue;
+        picture.tiles = Imf::TileDescription(4, 4, Imf::MIPMAP_LEVELS);
+        samples.push_back({"EXR tiles", exrFile(picture)});
+    }
+    ExrPicture flat{.name = "flat", .data = data, .planes = test_files::colourPlanes("")};
+    ExrPicture deep{.name = "deep",
+                    .data = test_files::window(0, 0, 2, 2),
+                    .display = data,
+                    .planes = {{"Z", Imf::FLOAT, [](int, int) { return 1.0F; }}},
+                    .deep = true};
+    samples.push_back({"EXR parts", exrFile({deep, flat})});
+    ExrPicture chroma{.data = data, .planes = {{"Y", Imf::HALF, [](int, int) { return 1.0F; }}}};
+    for (const char* name : {"RY", "BY"})
+        chroma.planes.push_back({name, Imf::HALF, [](int, int) { return 0.1F; }, 2});
+    samples.push_back({"EXR chroma", exrFile(chroma)});
+}
 
 // Small files of every kind that is read.
 std::vector<Sample> samples() {
@@ -29,27 +57,34 @@ std::vector<Sample> samples() {
         for (const ImageFormat format : {ImageFormat::Png, ImageFormat::Hdr, ImageFormat::Exr})
             for (const int width : {2, 9})
                 result.push_back(
-                    {format, encodeImage(pattern(width, 3, channels), format, Encoding::Linear)});
+                    {"written", encodeImage(pattern(width, 3, channels), format, Encoding::Linear)});
     // Smooth, so that compression and runs come into play.
     for (const ImageFormat format : {ImageFormat::Png, ImageFormat::Hdr, ImageFormat::Exr})
-        result.push_back({format, encodeImage(Image(32, 20, 3, 0.5F), format, Encoding::Linear)});
-    result.push_back({ImageFormat::Png, test_files::png(2, 1, 16, 0, {0, 0x01, 0x02, 0xff, 0xff})});
-    result.push_back({ImageFormat::Png, test_files::png(2, 1, 8, 3, {0, 1, 0}, {0, 0, 255, 255, 0, 0})});
+        result.push_back({"smooth", encodeImage(Image(32, 20, 3, 0.5F), format, Encoding::Linear)});
+    result.push_back({"PNG", test_files::png(2, 1, 16, 0, {0, 0x01, 0x02, 0xff, 0xff})});
+    result.push_back({"PNG", test_files::png(2, 1, 8, 3, {0, 1, 0}, {0, 0, 255, 255, 0, 0})});
     test_files::ExrBuilder half;
     half.height = 2;
     half.half("B", {1, 2, 3, 4}).half("G", {1, 2, 3, 4}).floats("R", {1, 2, 3, 4});
-    result.push_back({ImageFormat::Exr, half.bytes()});
+    result.push_back({"EXR half", half.bytes()});
     test_files::ExrBuilder runs; // two runs of 8 bytes, equal before and after the predictor
     runs.half("Y", std::vector<std::uint16_t>(8, 0x8080));
     runs.compression = 1;
     runs.chunk = {7, 0x80, 7, 0x80};
-    result.push_back({ImageFormat::Exr, runs.bytes()});
-    result.push_back({ImageFormat::Exr, test_files::pizSample().bytes()});
+    result.push_back({"EXR runs", runs.bytes()});
+    result.push_back({"EXR PIZ", test_files::pizSample().bytes()});
+    addExrSamples(result);
+    const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_xyze\nEXPOSURE=2\nCOLORCORR=1 2 1\n"
+                               "PRIMARIES=.64 .33 .29 .6 .15 .06 .333 .333\n\n+X 3 -Y 2\n";
+    result.push_back({"HDR old runs", test_files::bytesOf(header + std::string("\x80\x40\x20\x81\1\1\1\1"
+                                                                               "\x80\x40\x20\x81\1\1\1\1"
+                                                                               "\x80\x40\x20\x81\1\1\1\1",
+                                                                               24))});
     return result;
 }
 
 TEST(HostileImages, EverySampleIsWhole) {
-    for (const Sample& sample : samples()) EXPECT_NO_THROW(decodeImage(sample.bytes, sample.format, "file"));
+    for (const Sample& sample : samples()) EXPECT_NO_THROW(decodeImage(sample.bytes, "file"));
 }
 
 TEST(HostileImages, TruncatedAtEveryLengthIsAnError) {
@@ -58,10 +93,14 @@ TEST(HostileImages, TruncatedAtEveryLengthIsAnError) {
             // A copy of its own, so that a sanitizer sees a read beyond the end.
             const Bytes part(sample.bytes.begin(),
                              sample.bytes.begin() + static_cast<std::ptrdiff_t>(length));
-            EXPECT_THAT(decodeMessage(part, sample.format),
-                        AllOf(StartsWith("file: "), testing::Not(HasSubstr("\n"))))
-                << "format " << static_cast<int>(sample.format) << ", " << length << " of "
-                << sample.bytes.size();
+            const std::string message = decodeMessage(part);
+            // Where only the smaller levels of tiles are cut off, the picture is there.
+            if (message == "no error" && std::string_view(sample.kind) == "EXR tiles" && length > 600) {
+                EXPECT_EQ(decodeImage(part, "file"), decodeImage(sample.bytes, "file"));
+                continue;
+            }
+            EXPECT_THAT(message, AllOf(StartsWith("file: "), testing::Not(HasSubstr("\n"))))
+                << sample.kind << ", " << length << " of " << sample.bytes.size();
         }
 }
 
@@ -72,7 +111,7 @@ TEST(HostileImages, DamagedAtEveryByteIsAnErrorOrAnImage) {
                 Bytes damaged = sample.bytes;
                 damaged[at] ^= static_cast<std::byte>(change);
                 try {
-                    const Image image = decodeImage(damaged, sample.format, "file");
+                    const Image image = decodeImage(damaged, "file");
                     EXPECT_EQ(image.values.size(),
                               image.pixelCount() * static_cast<std::size_t>(image.channels));
                     EXPECT_LE(image.values.size(), maxImageValues);
