@@ -15,7 +15,14 @@ public:
 
     Operator curve = Operator::Aces;
     float exposure = 0;
+    bool autoExposure = false;
+    float key = 0.18f;
+    float adaptation = 16;
     bool encode = true;
+
+private:
+    void declareMetering(Declaration& declaration, const Desc& colour) const;
+    void adapt(Commands& commands) const;
 };
 
 } // namespace kestrel

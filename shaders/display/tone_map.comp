@@ -3,7 +3,15 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(COLOUR_FORMAT) uniform readonly image2D colour;
 layout(rgba8) uniform writeonly image2D image;
+#ifdef METERED
+layout(std430) readonly buffer Metered {
+    float average;
+    float factor; // on light
+    uint seen, pixels;
+};
+#else
 uniform float exposure; // factor
+#endif
 
 vec3 toneMapped(vec3 c) {
 #if OPERATOR == 1
@@ -27,6 +35,9 @@ void main() {
     sampled = vec4(sampled.rrr, 1.0);
 #endif
     // Beyond 2^40 the ACES quotient would be infinity over infinity; the curves have long reached 1 there.
+#ifdef METERED
+    float exposure = factor;
+#endif
     vec3 c = clamp(sampled.rgb * exposure, 0.0, 1.0995e12);
     c = clamp(toneMapped(c), 0.0, 1.0);
 #ifdef ENCODE

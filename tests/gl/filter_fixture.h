@@ -101,32 +101,32 @@ struct FilterTest : ShippedTest {
     static float depthAt(float viewDepth) { return 0.1f / viewDepth; }
 
     struct GivenRenderer : Renderer {
-        GivenRenderer(const Graph& graph, Extent size,
+        GivenRenderer(const Graph& graph, Extent extent,
                       const Capabilities& capabilities = context().capabilities())
-            : Renderer(graph, registry(), trianglesScene(square()), capabilities, options(size)) {
+            : Renderer(graph, registry(), trianglesScene(square()), capabilities, options(extent)) {
             setFreeCamera(straightCamera());
         }
-        static RenderOptions options(Extent size) {
+        static RenderOptions options(Extent extent) {
             RenderOptions made;
-            made.size = size;
+            made.size = extent;
             made.checkFinite = true;
             return made;
         }
     };
 
-    static Image uniform(Extent size, int channels, float value) {
-        return Image(static_cast<int>(size.width), static_cast<int>(size.height), channels, value);
+    static Image uniform(Extent extent, int channels, float value) {
+        return Image(static_cast<int>(extent.width), static_cast<int>(extent.height), channels, value);
     }
-    static Image facing(Extent size) {
-        Image normals = uniform(size, 4, 0);
+    static Image facing(Extent extent) {
+        Image normals = uniform(extent, 4, 0);
         for (size_t i = 2; i < normals.values.size(); i += 4) normals.values[i] = 1;
         return normals;
     }
     // A wall at distance 2 that fills the picture and stands still.
-    static FrameImages wall(Extent size) {
-        return {{"depth", always(uniform(size, 1, depthAt(2)))},
-                {"normal", always(facing(size))},
-                {"motion", always(uniform(size, 2, 0))}};
+    static FrameImages wall(Extent extent) {
+        return {{"depth", always(uniform(extent, 1, depthAt(2)))},
+                {"normal", always(facing(extent))},
+                {"motion", always(uniform(extent, 2, 0))}};
     }
     // Uniform in [0, 1), a function of pixel and frame.
     static float noise(int x, int y, std::uint32_t frame) {
