@@ -13,7 +13,7 @@ else
 fi
 # Tests stay in a build that has them: the demo must not throw away what the test command built.
 [ -f "$build/CMakeCache.txt" ] && grep -q '^KESTREL_TESTS:BOOL=ON' "$build/CMakeCache.txt" && tests=ON
-cmake -S "$root" -B "$build" -G Ninja -DKESTREL_UNITY=ON -DKESTREL_TESTS=$tests "$@" >"$build.log" 2>&1 ||
+cmake -S "$root" -B "$build" -G Ninja -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -DKESTREL_TESTS=$tests "$@" >"$build.log" 2>&1 ||
     { cat "$build.log" >&2; exit 2; }
 grep -- '-- Left out' "$build.log" || true
 rm -f "$build.log"

@@ -22,8 +22,8 @@ void printJson(const Json& json) {
 int listScenes(bool json) {
     Json all = Json::array();
     for (const BuiltinInfo& info : builtinInfos()) {
-        all.push_back({{"name", "builtin:" + info.name}, {"sentence", info.sentence}});
-        if (!json) fmt::print("builtin:{:<10} {}\n", info.name, info.sentence);
+        all.push_back({{"name", "builtin:" + info.name}, {"description", info.description}});
+        if (!json) fmt::print("builtin:{:<10} {}\n", info.name, info.description);
     }
     if (json) printJson({{"scenes", all}});
     return 0;
@@ -114,7 +114,8 @@ void addSceneCommand(CLI::App& app, Run& run) {
     exported->callback(
         [arguments, &run] { run = [arguments] { return exportTo(arguments->source, arguments->file); }; });
     scene->footer(
-        "Built-in scenes have three properties, as in 'builtin:tower?detail=0.1&split=4' (in quotes: '?' and\n"
+        "Built-in scenes have three properties, as in 'builtin:tower?detail=0.1&split=4' (in quotes: '?' "
+        "and\n"
         "'&' mean something to a shell): detail, 0.01 to 4, scales the number of triangles; split, 1 to 64,\n"
         "cuts each triangle into that number squared: the same surface in more triangles; extent, 1\n"
         "to 1000, makes the scene the middle of one so many times larger.\n"

@@ -3,7 +3,7 @@
 #include "draw/gpu_scene.h"
 #include "gl/loader.h"
 #include "graph/guard.h"
-#include "shader/trips.h"
+#include "shader/iterations.h"
 #include <fmt/format.h>
 #include <utility>
 
@@ -69,7 +69,7 @@ void Executor::beginFrame(const FrameScene& frame) {
     data.time = static_cast<float>(info.time);
     data.sceneBounds = glm::vec4(sphere.centre, sphere.radius);
     frameBlock_.upload(std::as_bytes(std::span(&data, 1)));
-    if (trips_.bytes() > 0) trips_.clear(0);
+    if (iterations_.bytes() > 0) iterations_.clear(0);
     if (options.timing && !clock_) clock_ = std::make_unique<gl::StepClock>(capabilities_);
     if (options.timing) clock_->beginFrame(info.index);
 }
@@ -98,7 +98,7 @@ bool Executor::run(const FrameScene& frame, Causes events) {
         collectSamples(frame.info.index);
         // Whoever reads the results back sees what shaders wrote.
         glMemoryBarrier(barrierBits(Barrier::BufferUpdate));
-        checkTrips();
+        checkIterations();
     } catch (...) {
         abandonFrame();
         throw;
@@ -179,9 +179,9 @@ std::optional<glm::uvec2> Executor::bind(int index, const FrameScene& frame) {
         for (const StepBindings::ViewSlot& view : bindings.views)
             glBindBufferBase(GL_UNIFORM_BUFFER, view.unit, views_.block(view, frame.info));
         if (bindings.frame) glBindBufferBase(GL_UNIFORM_BUFFER, *bindings.frame, frameBlock_.name());
-        if (bindings.trips)
-            glBindBufferRange(GL_SHADER_STORAGE_BUFFER, *bindings.trips, trips_.name(),
-                              static_cast<GLintptr>(index) * tripsStride, sizeof(TripsBlock));
+        if (bindings.iterations)
+            glBindBufferRange(GL_SHADER_STORAGE_BUFFER, *bindings.iterations, iterations_.name(),
+                              static_cast<GLintptr>(index) * iterationsStride, sizeof(IterationsBlock));
         if (bindings.scene) frame.gpu->bind(*program->program);
     }
     return bindTarget(step, bindings);

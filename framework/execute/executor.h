@@ -62,7 +62,7 @@ private:
     struct Kept { // what is compared between the plans
         std::string signature, state;
     };
-    static constexpr int tripsStride = 256; // bytes: no device asks for a coarser alignment of ranges
+    static constexpr int iterationsStride = 256; // bytes: no device asks for a coarser alignment of ranges
 
     static std::string signature(const Plan& plan, const PlanPass& pass, const Programs& programs);
     void keepStates(const Plan& next, const Programs& programs, const StateText& stateText);
@@ -77,7 +77,7 @@ private:
     // Before a step that reads single levels of a texture, and back after it.
     void restrictMips(const PlanStep& step, const StepBindings& bindings, bool restrict);
     void collectSamples(std::uint32_t frameIndex);
-    void checkTrips();
+    void checkIterations();
     void checkOutputs(const PlanPass& pass);
 
     Capabilities capabilities_;
@@ -96,7 +96,7 @@ private:
     std::vector<StepSample> samples_;
     std::unique_ptr<gl::StepClock> clock_;
     gl::VertexArray noVertices_;
-    gl::Buffer frameBlock_, trips_;
+    gl::Buffer frameBlock_, iterations_;
     Causes lastEvents_ = Causes::None;
     bool unfinished_ = false; // the frame was left after an overflow
 };

@@ -22,7 +22,7 @@ std::string Executor::signature(const Plan& plan, const PlanPass& pass, const Pr
     std::string text =
         fmt::format("{} {} {}", pass.type, static_cast<std::uint32_t>(pass.depends), pass.always);
     for (const auto& [port, desc] : pass.descs)
-        text += fmt::format("\n{} {} {}", port, describe(desc), desc.gives);
+        text += fmt::format("\n{} {} {} {}", port, describe(desc), desc.provides, desc.required);
     for (const auto& [port, resource] : pass.ports)
         if (resource >= 0)
             text +=
@@ -83,7 +83,7 @@ void Executor::adopt(std::shared_ptr<const Plan> next, const StateText& stateTex
     std::vector<StepBindings> bindings;
     std::vector<std::string> labels;
     std::vector<Problem> problems;
-    bool countsTrips = false;
+    bool countsIterations = false;
     for (size_t i = 0; i < next->steps.size(); ++i) {
         const auto index = static_cast<int>(i);
         const PlanStep& step = next->steps[i];
@@ -91,7 +91,7 @@ void Executor::adopt(std::shared_ptr<const Plan> next, const StateText& stateTex
                                      next->passes.at(static_cast<size_t>(step.pass)).name, step.step.name));
         try {
             bindings.push_back(resolveBindings(*next, index, programs.of(index), GpuScene::reserves));
-            countsTrips = countsTrips || bindings.back().trips;
+            countsIterations = countsIterations || bindings.back().iterations;
         } catch (const InputError& error) {
             problems.insert(problems.end(), error.problems().begin(), error.problems().end());
         }
@@ -101,8 +101,9 @@ void Executor::adopt(std::shared_ptr<const Plan> next, const StateText& stateTex
 
     framebuffers_.clear();
     views_.adopt(*next);
-    trips_ = countsTrips ? gl::Buffer(next->steps.size() * static_cast<size_t>(tripsStride), "Trips")
-                         : gl::Buffer();
+    iterations_ = countsIterations
+                      ? gl::Buffer(next->steps.size() * static_cast<size_t>(iterationsStride), "Iterations")
+                      : gl::Buffer();
     keepStates(*next, programs, stateText);
     programs_ = std::move(programs);
     bindings_ = std::move(bindings);

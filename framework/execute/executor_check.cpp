@@ -2,7 +2,7 @@
 #include "execute/executor.h"
 #include "execute/finite.h"
 #include "gl/loader.h"
-#include "shader/trips.h"
+#include "shader/iterations.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -28,18 +28,18 @@ std::optional<BadValue> firstBadOfBuffer(const gl::Buffer& buffer, const Desc& d
 
 } // namespace
 
-void Executor::checkTrips() {
-    if (trips_.bytes() == 0) return;
+void Executor::checkIterations() {
+    if (iterations_.bytes() == 0) return;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    const std::vector<std::byte> bytes = trips_.download();
+    const std::vector<std::byte> bytes = iterations_.download();
     std::vector<Problem> problems;
     for (size_t i = 0; i < plan().steps.size(); ++i) {
-        TripsBlock block;
-        std::memcpy(&block, bytes.data() + i * static_cast<size_t>(tripsStride), sizeof(block));
+        IterationsBlock block;
+        std::memcpy(&block, bytes.data() + i * static_cast<size_t>(iterationsStride), sizeof(block));
         if (block.exhausted == 0) continue;
         problems.push_back({{},
-                            fmt::format("{}: {} loop nests made more than {} trips (the most: {})",
-                                        labels_[i], block.exhausted, maxTrips, block.maximum)});
+                            fmt::format("{}: {} loop nests made more than {} iterations (the most: {})",
+                                        labels_[i], block.exhausted, maxIterations, block.maximum)});
     }
     if (!problems.empty()) throw InputError(std::move(problems));
 }

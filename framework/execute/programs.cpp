@@ -1,6 +1,6 @@
 #include "execute/programs.h"
 #include "gl/loader.h"
-#include "shader/trips.h"
+#include "shader/iterations.h"
 #include <optional>
 
 namespace kestrel {
@@ -46,7 +46,7 @@ void Programs::adopt(const Plan& plan, ShaderLibrary& library, const Capabilitie
     for (size_t i = 0; i < composed.size(); ++i) try {
             ProgramRequest request = plan.programs[i];
 #ifdef KESTREL_DEBUG
-            request.defines[tripsDefine] = "1";
+            request.defines[iterationsDefine] = "1";
 #endif
             composed[i] = compose(request, library);
         } catch (const InputError& error) {
@@ -65,7 +65,7 @@ void Programs::adopt(const Plan& plan, ShaderLibrary& library, const Capabilitie
                 made->program = std::make_unique<gl::Program>(text, key.second, capabilities);
                 made->name = text.name;
                 made->key = text.key;
-                made->countsTrips = made->program->slot(tripsBlockName).has_value();
+                made->countsIterations = made->program->slot(iterationsBlockName).has_value();
                 made->readsLastMotion = readsLastMotion(text, *made->program);
                 entry = std::move(made);
             } catch (const InputError& error) {

@@ -16,7 +16,7 @@ public:
         std::unique_ptr<gl::Program> program;
         std::string name;      // its files, for messages
         std::uint64_t key = 0; // of the composed text
-        bool countsTrips = false;
+        bool countsIterations = false;
         bool readsLastMotion = false; // uses last frame's transforms
     };
 

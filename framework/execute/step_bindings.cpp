@@ -1,5 +1,5 @@
 #include "execute/step_bindings.h"
-#include "shader/trips.h"
+#include "shader/iterations.h"
 #include <cctype>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -123,8 +123,8 @@ StepBindings resolveBindings(const Plan& plan, int stepIndex, const Programs::En
         if (bound) continue;
         if (slot.kind == Kind::UniformBlock && name == "Frame") {
             result.frame = slot.unit;
-        } else if (slot.kind == Kind::StorageBlock && name == tripsBlockName) {
-            result.trips = slot.unit;
+        } else if (slot.kind == Kind::StorageBlock && name == iterationsBlockName) {
+            result.iterations = slot.unit;
         } else if (boundByScene(name)) {
             result.scene = true;
         } else if (const auto view = viewOf(name, slot.unit, plan, step);

@@ -23,10 +23,10 @@ struct StepBindings {
         bool previous = false;
     };
     std::vector<Slot> slots;
-    std::vector<ViewSlot> views;              // `<Port>View` blocks
-    std::optional<unsigned int> frame, trips; // the blocks Frame and Trips
-    bool scene = false;                       // the program has names that the scene binds
-    std::vector<int> colour;                  // bindings, in the order of attachment numbers
+    std::vector<ViewSlot> views;                   // `<Port>View` blocks
+    std::optional<unsigned int> frame, iterations; // the blocks Frame and Iterations
+    bool scene = false;                            // the program has names that the scene binds
+    std::vector<int> colour;                       // bindings, in the order of attachment numbers
     int depth = -1;
     bool restrictsMips = false;
 };

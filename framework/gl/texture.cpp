@@ -47,8 +47,8 @@ void requireSize(const Desc& desc, const std::string& label) {
                                            value, what, limit));
     };
     const int side = glInteger(desc.kind == ResourceKind::Texture3D     ? GL_MAX_3D_TEXTURE_SIZE
-                             : desc.kind == ResourceKind::TextureCube ? GL_MAX_CUBE_MAP_TEXTURE_SIZE
-                                                                      : GL_MAX_TEXTURE_SIZE);
+                               : desc.kind == ResourceKind::TextureCube ? GL_MAX_CUBE_MAP_TEXTURE_SIZE
+                                                                        : GL_MAX_TEXTURE_SIZE);
     require(desc.extent.width, side, "texels in width");
     require(desc.extent.height, side, "texels in height");
     if (desc.kind == ResourceKind::Texture3D) require(desc.extent.depth, side, "texels in depth");

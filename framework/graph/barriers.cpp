@@ -9,9 +9,9 @@ namespace {
 
 struct AccessRule {
     Access access;
-    Barrier visible;   // makes shader writes visible to this access
-    bool incoherent;   // writes of this kind need a barrier before they are seen
-    bool shaderMemory; // an access that a later shader write must not overtake
+    Barrier visibility; // makes shader writes visible to this access
+    bool incoherent;    // writes of this kind need a barrier before they are seen
+    bool shaderMemory;  // a later shader write has an execution dependency on it
 };
 
 // OpenGL 4.6, 7.13.2. Only image stores and storage block writes are incoherent. The barriers for shader
@@ -31,14 +31,15 @@ constexpr std::array<AccessRule, 9> rules = {{
 
 const AccessRule& ruleOf(Access access) { return rules.at(static_cast<size_t>(access)); }
 
-// What is pending on one cell.
+// What one cell still owes: visibility of what was written to it, and an execution dependency of a later
+// store on what accessed it.
 struct Pending {
-    bool written = false;             // by an incoherent write
-    Barrier seenBy = Barrier::None;   // barriers that have stood since, whatever is skipped
-    Barrier seenHere = Barrier::None; // … within the present pass, whose steps run together
-    bool touched = false;             // accessed by shaders or fixed function since …
-    Barrier heldBack = Barrier::None; // … and these barriers have stood since
-    Barrier heldBackHere = Barrier::None;
+    bool written = false;                 // by an incoherent write …
+    Barrier visibleTo = Barrier::None;    // … whose visibility these barriers have met, whatever is skipped
+    Barrier visibleHere = Barrier::None;  // … and these within the present pass, whose steps run together
+    bool touched = false;                 // accessed by shaders or fixed function …
+    Barrier orderedAfter = Barrier::None; // … on which these barriers have met the execution dependency
+    Barrier orderedAfterHere = Barrier::None;
 };
 
 struct Touch {
@@ -136,7 +137,7 @@ private:
     }
 
     void enterPass() {
-        for (Pending& pending : pending_) pending.seenHere = pending.heldBackHere = Barrier::None;
+        for (Pending& pending : pending_) pending.visibleHere = pending.orderedAfterHere = Barrier::None;
     }
 
     void step(size_t index, bool keepsBarrier) {
@@ -153,13 +154,13 @@ private:
 
     [[nodiscard]] Barrier neededFor(const Touch& touch) const {
         const Pending& pending = pending_[touch.cell];
-        const Barrier visible = ruleOf(touch.access).visible;
+        const Barrier visibility = ruleOf(touch.access).visibility;
         Barrier needed = Barrier::None;
-        if (pending.written && ((pending.seenBy | pending.seenHere) & visible) == Barrier::None)
-            needed |= visible;
+        if (pending.written && ((pending.visibleTo | pending.visibleHere) & visibility) == Barrier::None)
+            needed |= visibility;
         if (touch.write && isIncoherent(touch.access) && pending.touched &&
-            ((pending.heldBack | pending.heldBackHere) & visible) == Barrier::None)
-            needed |= visible;
+            ((pending.orderedAfter | pending.orderedAfterHere) & visibility) == Barrier::None)
+            needed |= visibility;
         return needed;
     }
 
@@ -168,14 +169,14 @@ private:
     void stand(Barrier barrier, int pass, const std::vector<Touch>& touches) {
         const bool always = plan_.passes[static_cast<size_t>(pass)].everyFrame;
         for (Pending& pending : pending_) {
-            pending.seenHere |= barrier;
-            pending.heldBackHere |= barrier;
+            pending.visibleHere |= barrier;
+            pending.orderedAfterHere |= barrier;
             if (!always) continue;
-            pending.seenBy |= barrier;
-            pending.heldBack |= barrier;
+            pending.visibleTo |= barrier;
+            pending.orderedAfter |= barrier;
         }
         for (const Touch& touch : touches)
-            if (!touch.write && followsWriters(pass, touch.cell)) pending_[touch.cell].seenBy |= barrier;
+            if (!touch.write && followsWriters(pass, touch.cell)) pending_[touch.cell].visibleTo |= barrier;
     }
 
     [[nodiscard]] bool followsWriters(int pass, size_t cell) const {
@@ -189,11 +190,11 @@ private:
         Pending& pending = pending_[touch.cell];
         if (touch.write && isIncoherent(touch.access)) {
             pending.written = true;
-            pending.seenBy = pending.seenHere = Barrier::None;
+            pending.visibleTo = pending.visibleHere = Barrier::None;
         }
         if (ruleOf(touch.access).shaderMemory) {
             pending.touched = true;
-            pending.heldBack = pending.heldBackHere = Barrier::None;
+            pending.orderedAfter = pending.orderedAfterHere = Barrier::None;
         }
     }
 
@@ -205,14 +206,14 @@ private:
 
 } // namespace
 
-Barrier barrierFor(Access access) { return ruleOf(access).visible; }
+Barrier barrierFor(Access access) { return ruleOf(access).visibility; }
 
 bool isIncoherent(Access access) { return ruleOf(access).incoherent; }
 
 Barrier barrierBetween(Access first, bool firstWrites, Access second, bool secondWrites) {
-    const bool makesVisible = firstWrites && isIncoherent(first);
-    const bool holdsBack = secondWrites && isIncoherent(second) && ruleOf(first).shaderMemory;
-    return makesVisible || holdsBack ? barrierFor(second) : Barrier::None;
+    const bool visibility = firstWrites && isIncoherent(first);
+    const bool executionDependency = secondWrites && isIncoherent(second) && ruleOf(first).shaderMemory;
+    return visibility || executionDependency ? barrierFor(second) : Barrier::None;
 }
 
 void planBarriers(Plan& plan) { Planner(plan).run(); }

@@ -191,7 +191,7 @@ private:
                              desc.bytes, formatInfo(desc.format).name, texels));
     }
 
-    // Gives and takes.
+    // What is provided and requested.
     void checkModuleUse(const ModuleUse& use, const std::string& what) {
         const PortInfo* info = known(use.port, what + " includes");
         if (info == nullptr) return;
@@ -203,13 +203,13 @@ private:
             note(use.port, fmt::format("{} includes it, but it is not connected", what));
             return;
         }
-        const Bits given = node_.inputs[use.port].desc.gives;
+        const Bits given = node_.inputs[use.port].desc.provides;
         const std::string producer = network_.text(*originOfInput(network_, index_, use.port));
         const bool traces = info->kind == PortKind::Tracer || info->kind == PortKind::Hits;
-        if (traces && (use.takes & takes::Surface) != 0 && (given & gives::Surface) == 0)
+        if (traces && (use.requests & requests::Surface) != 0 && (given & provides::Surface) == 0)
             note(use.port, fmt::format("'{}' needs normals and materials at hits, which '{}' does not give",
                                        node_.name(), producer));
-        if ((given & gives::AlwaysSnaps) != 0 && (use.takes & takes::BearsSnap) == 0)
+        if ((given & provides::AlwaysSnaps) != 0 && (use.requests & requests::Snap) == 0)
             note(use.port,
                  fmt::format("'{}' needs the exact direction, but '{}' always snaps to a nearby one",
                              node_.name(), producer));

@@ -22,7 +22,7 @@ PassSet makePasses(const Graph& graph, const Registry& registry) {
 
 void setProperties(Pass& pass, const PassType& type, const GraphPass& document) {
     for (const PropertyInfo& property : type.properties) {
-        Value value = property.standard;
+        Value value = property.defaultValue;
         for (const auto& [name, given] : document.properties)
             if (name == property.name) value = given;
         KESTREL_CHECK(!valueMistake(property, value));
@@ -46,7 +46,7 @@ Plan compile(const Graph& graph, const Registry& registry, const PassSet& passes
     const Order order = orderPasses(network);
 
     // Give out resources, compose the shader variants of all steps, bind.
-    Plan plan = giveOut(network, order);
+    Plan plan = allocateResources(network, order);
 
     // Transient resources with disjoint lifetimes share memory.
     assignObjects(plan, options.shareMemory);

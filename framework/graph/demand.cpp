@@ -31,7 +31,7 @@ Inputs inputsOf(const Network& network, const Node& node) {
 }
 
 // Declares and completes what follows from the inputs: what is the same as an input, or an input changed in
-// place, has its descriptor; a module without an output entry gives nothing.
+// place, has its descriptor; a module without an output entry provides nothing.
 Declaration declare(const Network& network, const Node& node, const Demand& demand) {
     Declaration declaration = guarded(
         node.name(), "declare", [&] { return node.instance->declare(network.world, node.inputs, demand); });
@@ -62,14 +62,14 @@ void readsOfStep(const Node& node, const Step& step,
                  const std::function<void(const std::string&, Bits)>& visit) {
     for (const Use& use : step.uses)
         if (isInput(node, use.port)) visit(use.port, 0);
-    for (const ModuleUse& use : step.modules) visit(use.port, use.takes);
+    for (const ModuleUse& use : step.modules) visit(use.port, use.requests);
 }
 
 void readsOfModule(const Node& node, const Module& module,
                    const std::function<void(const std::string&, Bits)>& visit) {
     for (const Use& use : module.uses)
         if (isInput(node, use.port)) visit(use.port, 0);
-    for (const ModuleUse& use : module.modules) visit(use.port, use.takes);
+    for (const ModuleUse& use : module.modules) visit(use.port, use.requests);
 }
 
 void findPossibleCauses(const Network& network, Node& node) {
@@ -141,10 +141,10 @@ bool propagateBackward(Network& network) {
             changed = true;
         }
         if (!live) continue;
-        forEachRead(node, node.real, demand, [&](const std::string& port, Bits takes) {
+        forEachRead(node, node.real, demand, [&](const std::string& port, Bits requests) {
             const auto feed = node.feeds.find(port);
             if (feed != node.feeds.end())
-                asked[static_cast<size_t>(feed->second.node)].add(feed->second.port, takes);
+                asked[static_cast<size_t>(feed->second.node)].add(feed->second.port, requests);
         });
     }
     return changed;
@@ -221,13 +221,13 @@ void refuseProblems(const Network& network) {
 } // namespace
 
 void forEachRead(const Node& node, const Declaration& declaration, const Demand& demand,
-                 const std::function<void(const std::string& port, Bits takes)>& visit) {
+                 const std::function<void(const std::string& port, Bits requests)>& visit) {
     for (const Step& step : declaration.steps) readsOfStep(node, step, visit);
     for (const Module& module : declaration.modules)
         if (demand.reads(module.port)) readsOfModule(node, module, visit);
     for (const Output& output : declaration.outputs) {
         if (!demand.reads(output.port)) continue;
-        if (!output.same.empty()) visit(output.same, demand.takes(output.port));
+        if (!output.same.empty()) visit(output.same, demand.requests(output.port));
         if (!output.updates.empty()) visit(output.updates, 0);
     }
 }

@@ -83,9 +83,9 @@ std::vector<int> topologicalOrder(const std::vector<std::set<int>>& before);
 // demand.cpp: declares forward with every demand, then propagates the real demand backward and declares
 // again, until neither changes. Throws InputError with all problems of live passes.
 void settleDemand(Network& network);
-// The input ports that a declaration reads, with what it takes of modules.
+// The input ports that a declaration reads, with what it requests of modules.
 void forEachRead(const Node& node, const Declaration& declaration, const Demand& demand,
-                 const std::function<void(const std::string& port, Bits takes)>& visit);
+                 const std::function<void(const std::string& port, Bits requests)>& visit);
 
 // check_declaration.cpp: mistakes of a declaration against the pass's own tables and what is connected.
 std::vector<DeclarationProblem> checkDeclaration(const Network& network, int node,
@@ -107,7 +107,7 @@ struct Order {
 Order orderPasses(const Network& network);
 
 // resources.cpp: resources, bindings, steps and passes of the plan.
-Plan giveOut(const Network& network, const Order& order);
+Plan allocateResources(const Network& network, const Order& order);
 
 // left_out.cpp
 std::vector<LeftOut> reportLeftOut(const Network& network);

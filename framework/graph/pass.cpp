@@ -18,12 +18,12 @@ const Inputs::Input& Inputs::operator[](std::string_view port) const {
     return found->second;
 }
 
-Bits Demand::takes(std::string_view port) const {
+Bits Demand::requests(std::string_view port) const {
     if (all_) return ~Bits{0};
     const auto found = ports_.find(port);
     return found == ports_.end() ? Bits{0} : found->second;
 }
 
-void Demand::add(std::string port, Bits takes) { ports_[std::move(port)] |= takes; }
+void Demand::add(std::string port, Bits requests) { ports_[std::move(port)] |= requests; }
 
 } // namespace kestrel

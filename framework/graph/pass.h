@@ -52,8 +52,8 @@ public:
         return all_ || ports_.find(port) != ports_.end();
     }
     // The union of what consumers take of a module port.
-    [[nodiscard]] Bits takes(std::string_view port) const;
-    void add(std::string port, Bits takes = 0);
+    [[nodiscard]] Bits requests(std::string_view port) const;
+    void add(std::string port, Bits requests = 0);
     // Whether anything at all is asked for.
     [[nodiscard]] bool any() const { return all_ || !ports_.empty(); }
     friend bool operator==(const Demand&, const Demand&) = default;
@@ -85,7 +85,7 @@ struct Use {
 // Includes the module connected to input `port` (`#include <port:NAME>`) into the step's program.
 struct ModuleUse {
     std::string port;
-    Bits takes = 0;
+    Bits requests = 0;
 };
 
 // One piece of work: at most one program. Barriers, clocks and debug groups stand between steps.

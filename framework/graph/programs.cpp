@@ -75,21 +75,21 @@ void bindModules(const Network& network, int node, const std::vector<ModuleUse>&
     }
 }
 
-// What a consumer takes reaches the module as defines. A module inside a module is asked by the inner one,
+// What a consumer requests reaches the module as defines. A module inside a module is asked by the inner one,
 // but may snap only if the outermost consumer bears it.
 ModuleInstance instanceOf(const Network& network, const Provider& provider, Bits taken) {
     ModuleInstance instance{provider.module->shader, provider.module->defines, {}};
-    constexpr std::pair<Bits, const char*> defines[] = {{takes::AnyHit, "TAKES_ANY"},
-                                                        {takes::ClosestHit, "TAKES_CLOSEST"},
-                                                        {takes::Surface, "TAKES_SURFACE"},
-                                                        {takes::BearsSnap, "TAKES_SNAP"},
-                                                        {takes::AllHits, "TAKES_ALL"}};
+    constexpr std::pair<Bits, const char*> defines[] = {{requests::AnyHit, "REQUESTS_ANY"},
+                                                        {requests::ClosestHit, "REQUESTS_CLOSEST"},
+                                                        {requests::Surface, "REQUESTS_SURFACE"},
+                                                        {requests::Snap, "REQUESTS_SNAP"},
+                                                        {requests::AllHits, "REQUESTS_ALL"}};
     for (const auto& [bit, name] : defines)
         if ((taken & bit) != 0) instance.defines[name] = "1";
     for (const ModuleUse& use : provider.module->modules) {
         const auto inner = providerOf(network, provider.node, use.port);
         if (!inner) continue;
-        const Bits innerTakes = (taken & takes::BearsSnap) != 0 ? use.takes : use.takes & ~takes::BearsSnap;
+        const Bits innerTakes = (taken & requests::Snap) != 0 ? use.requests : use.requests & ~requests::Snap;
         instance.modules[use.port] = instanceOf(network, *inner, innerTakes);
     }
     return instance;
@@ -165,7 +165,7 @@ ProgramRequest programOf(const Network& network, int node, const Step& step) {
     ProgramRequest request{step.shaders, step.defines, {}};
     for (const ModuleUse& use : step.modules)
         if (const auto provider = providerOf(network, node, use.port))
-            request.modules[use.port] = instanceOf(network, *provider, use.takes);
+            request.modules[use.port] = instanceOf(network, *provider, use.requests);
     return request;
 }
 

@@ -134,7 +134,7 @@ void Registry::add(PassType type) {
     for (const PortInfo& port : type.ports) noteName(port.name, "port");
     for (const PropertyInfo& property : type.properties) {
         noteName(property.name, "property");
-        if (const auto mistake = valueMistake(property, property.standard))
+        if (const auto mistake = valueMistake(property, property.defaultValue))
             note(fmt::format("the default of '{}' {}", property.name, *mistake));
     }
     if (!problems.empty()) throw InputError(std::move(problems));

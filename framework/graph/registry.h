@@ -17,7 +17,7 @@ struct PortInfo {
     PortKind kind = PortKind::Texture;
     PortDirection direction = PortDirection::Input;
     bool optional = false; // of an input
-    std::string sentence;
+    std::string description;
     bool display = false; // an output that holds display-referred values: written to 8-bit files as it is
     // The range of an output's values, where it is known; `render --check-finite` holds them against it.
     double minimum = -std::numeric_limits<double>::infinity(),
@@ -29,18 +29,18 @@ enum class PropertyKind : std::uint8_t { Bool, Int, Float, Choice, Text, Vector 
 struct PropertyInfo {
     std::string name;
     PropertyKind kind = PropertyKind::Float;
-    Value standard; // the default, taken from a default-constructed pass
+    Value defaultValue; // the default, taken from a default-constructed pass
     double minimum = -std::numeric_limits<double>::infinity(),
            maximum = std::numeric_limits<double>::infinity();
     std::vector<std::string> choices; // of Choice
     int components = 0;               // of Vector
-    std::string unit, sentence;
+    std::string unit, description;
     std::function<void(Pass&, const Value&)> set; // the value is of the right kind and in range
     std::function<Value(const Pass&)> get;
 };
 
 struct PassType {
-    std::string name, sentence;
+    std::string name, description;
     std::vector<PortInfo> ports;
     std::vector<PropertyInfo> properties;
     std::function<std::unique_ptr<Pass>()> make;
@@ -85,23 +85,23 @@ private:
 template<class T>
 class Describe {
 public:
-    Describe(std::string name, std::string sentence) {
+    Describe(std::string name, std::string description) {
         type_.name = std::move(name);
-        type_.sentence = std::move(sentence);
+        type_.description = std::move(description);
         type_.make = [] { return std::make_unique<T>(); };
     }
-    Describe& input(std::string name, PortKind kind, std::string sentence) {
-        return port(std::move(name), kind, PortDirection::Input, false, std::move(sentence));
+    Describe& input(std::string name, PortKind kind, std::string description) {
+        return port(std::move(name), kind, PortDirection::Input, false, std::move(description));
     }
-    Describe& optionalInput(std::string name, PortKind kind, std::string sentence) {
-        return port(std::move(name), kind, PortDirection::Input, true, std::move(sentence));
+    Describe& optionalInput(std::string name, PortKind kind, std::string description) {
+        return port(std::move(name), kind, PortDirection::Input, true, std::move(description));
     }
-    Describe& output(std::string name, PortKind kind, std::string sentence) {
-        return port(std::move(name), kind, PortDirection::Output, false, std::move(sentence));
+    Describe& output(std::string name, PortKind kind, std::string description) {
+        return port(std::move(name), kind, PortDirection::Output, false, std::move(description));
     }
     // A texture with display-referred values (sRGB code values).
-    Describe& displayOutput(std::string name, std::string sentence) {
-        port(std::move(name), PortKind::Texture, PortDirection::Output, false, std::move(sentence));
+    Describe& displayOutput(std::string name, std::string description) {
+        port(std::move(name), PortKind::Texture, PortDirection::Output, false, std::move(description));
         type_.ports.back().display = true;
         return *this;
     }
@@ -111,21 +111,21 @@ public:
         type_.ports.back().maximum = maximum;
         return *this;
     }
-    Describe& internal(std::string name, PortKind kind, std::string sentence) {
-        return port(std::move(name), kind, PortDirection::Internal, false, std::move(sentence));
+    Describe& internal(std::string name, PortKind kind, std::string description) {
+        return port(std::move(name), kind, PortDirection::Internal, false, std::move(description));
     }
     // A number, whole or not by the member's type; the range is inclusive.
     template<class Number>
     requires std::is_arithmetic_v<Number> Describe& number(std::string name, Number T::*member,
                                                            double minimum, double maximum, std::string unit,
-                                                           std::string sentence) {
+                                                           std::string description) {
         PropertyInfo info;
         info.name = std::move(name);
         info.kind = std::is_integral_v<Number> ? PropertyKind::Int : PropertyKind::Float;
         info.minimum = minimum;
         info.maximum = maximum;
         info.unit = std::move(unit);
-        info.sentence = std::move(sentence);
+        info.description = std::move(description);
         info.set = [member](Pass& pass, const Value& value) {
             static_cast<T&>(pass).*member = std::holds_alternative<std::int64_t>(value)
                                                 ? static_cast<Number>(std::get<std::int64_t>(value))
@@ -139,11 +139,11 @@ public:
         };
         return property(std::move(info));
     }
-    Describe& flag(std::string name, bool T::*member, std::string sentence) {
+    Describe& flag(std::string name, bool T::*member, std::string description) {
         PropertyInfo info;
         info.name = std::move(name);
         info.kind = PropertyKind::Bool;
-        info.sentence = std::move(sentence);
+        info.description = std::move(description);
         info.set = [member](Pass& pass, const Value& value) {
             static_cast<T&>(pass).*member = std::get<bool>(value);
         };
@@ -152,13 +152,13 @@ public:
     }
     // An enumeration whose values 0, 1, … have these names.
     template<class Enum>
-    requires std::is_enum_v<Enum> Describe& choice(std::string name, Enum T::*member,
-                                                   std::vector<std::string> choices, std::string sentence) {
+    requires std::is_enum_v<Enum> Describe&
+    choice(std::string name, Enum T::*member, std::vector<std::string> choices, std::string description) {
         PropertyInfo info;
         info.name = std::move(name);
         info.kind = PropertyKind::Choice;
         info.choices = choices;
-        info.sentence = std::move(sentence);
+        info.description = std::move(description);
         info.set = [member, choices](Pass& pass, const Value& value) {
             const auto& text = std::get<std::string>(value);
             for (size_t i = 0; i < choices.size(); ++i)
@@ -169,11 +169,11 @@ public:
         };
         return property(std::move(info));
     }
-    Describe& text(std::string name, std::string T::*member, std::string sentence) {
+    Describe& text(std::string name, std::string T::*member, std::string description) {
         PropertyInfo info;
         info.name = std::move(name);
         info.kind = PropertyKind::Text;
-        info.sentence = std::move(sentence);
+        info.description = std::move(description);
         info.set = [member](Pass& pass, const Value& value) {
             static_cast<T&>(pass).*member = std::get<std::string>(value);
         };
@@ -183,7 +183,7 @@ public:
     // A vector of 2, 3 or 4 numbers; the range holds for each component.
     template<int N>
     Describe& vector(std::string name, glm::vec<N, float> T::*member, double minimum, double maximum,
-                     std::string unit, std::string sentence) {
+                     std::string unit, std::string description) {
         PropertyInfo info;
         info.name = std::move(name);
         info.kind = PropertyKind::Vector;
@@ -191,7 +191,7 @@ public:
         info.minimum = minimum;
         info.maximum = maximum;
         info.unit = std::move(unit);
-        info.sentence = std::move(sentence);
+        info.description = std::move(description);
         info.set = [member](Pass& pass, const Value& value) {
             const auto& numbers = std::get<std::vector<double>>(value);
             for (int i = 0; i < N; ++i)
@@ -208,12 +208,12 @@ public:
 
 private:
     Describe& port(std::string name, PortKind kind, PortDirection direction, bool optional,
-                   std::string sentence) {
-        type_.ports.push_back({std::move(name), kind, direction, optional, std::move(sentence), false});
+                   std::string description) {
+        type_.ports.push_back({std::move(name), kind, direction, optional, std::move(description), false});
         return *this;
     }
     Describe& property(PropertyInfo info) {
-        info.standard = info.get(T());
+        info.defaultValue = info.get(T());
         type_.properties.push_back(std::move(info));
         return *this;
     }

@@ -24,8 +24,8 @@ std::string dotText(const Graph& graph, const Registry& registry, const Plan& pl
 std::string passListText(const Registry& registry);
 std::string passTypeText(const PassType& type);
 
-// [{"name","sentence","plugin","ports":[{"name","kind","direction","optional","sentence"}],"properties":
-// [{"name","kind","default","minimum","maximum","choices","components","unit","sentence"}]}]
-std::string passesJson(const std::vector<PassType>& types);
+// {"passes":[{"name","description","plugin","ports":[{"name","kind","direction","optional","description"}],
+// "properties":[{"name","kind","default","minimum","maximum","choices","components","unit","description"}]}]}
+std::string passesJson(const std::vector<const PassType*>& types);
 
 } // namespace kestrel

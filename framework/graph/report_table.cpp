@@ -24,17 +24,16 @@ std::string_view directionName(PortDirection direction) {
 // A number as JSON has it, whole where it is whole, short where it is a float.
 Out number(double value) { return Out::parse(numberText(value)); }
 
-Out standardOf(const PropertyInfo& property) { return Out::parse(jsonText(property.standard)); }
+Out defaultOf(const PropertyInfo& property) { return Out::parse(jsonText(property.defaultValue)); }
 
 Out propertyJson(const PropertyInfo& property) {
-    Out json = {
-        {"name", property.name}, {"kind", kindName(property.kind)}, {"default", standardOf(property)}};
+    Out json = {{"name", property.name}, {"kind", kindName(property.kind)}, {"default", defaultOf(property)}};
     if (std::isfinite(property.minimum)) json["minimum"] = number(property.minimum);
     if (std::isfinite(property.maximum)) json["maximum"] = number(property.maximum);
     if (!property.choices.empty()) json["choices"] = property.choices;
     if (property.components > 0) json["components"] = property.components;
     json["unit"] = property.unit;
-    json["sentence"] = property.sentence;
+    json["description"] = property.description;
     return json;
 }
 
@@ -87,8 +86,8 @@ Out propertiesSchema(const PassType& type) {
     for (const PropertyInfo& property : type.properties) {
         Out schema = valueSchema(property);
         schema["description"] =
-            property.unit.empty() ? property.sentence : property.sentence + " (" + property.unit + ")";
-        schema["default"] = standardOf(property);
+            property.unit.empty() ? property.description : property.description + " (" + property.unit + ")";
+        schema["default"] = defaultOf(property);
         properties[property.name] = std::move(schema);
     }
     return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
@@ -119,12 +118,12 @@ std::string passListText(const Registry& registry) {
     for (const PassType& type : registry.types()) width = std::max(width, type.name.size());
     std::string text;
     for (const PassType& type : registry.types())
-        text += fmt::format("{:{}}  {}\n", type.name, width, type.sentence);
+        text += fmt::format("{:{}}  {}\n", type.name, width, type.description);
     return text;
 }
 
 std::string passTypeText(const PassType& type) {
-    std::string text = fmt::format("{}: {}\n", type.name, type.sentence);
+    std::string text = fmt::format("{}: {}\n", type.name, type.description);
     if (!type.plugin.empty()) text += fmt::format("  from {}\n", type.plugin);
     for (const PortDirection direction :
          {PortDirection::Input, PortDirection::Output, PortDirection::Internal})
@@ -132,32 +131,33 @@ std::string passTypeText(const PassType& type) {
             if (port.direction == direction)
                 text +=
                     fmt::format("  {} {} ({}{}): {}\n", directionName(direction), port.name,
-                                portKindName(port.kind), port.optional ? ", optional" : "", port.sentence);
+                                portKindName(port.kind), port.optional ? ", optional" : "", port.description);
     for (const PropertyInfo& property : type.properties)
-        text += fmt::format("  property {} = {} ({}): {}\n", property.name, jsonText(property.standard),
-                            rangeText(property), property.sentence);
+        text += fmt::format("  property {} = {} ({}): {}\n", property.name, jsonText(property.defaultValue),
+                            rangeText(property), property.description);
     return text;
 }
 
-std::string passesJson(const std::vector<PassType>& types) {
-    Out json = Out::array();
-    for (const PassType& type : types) {
+std::string passesJson(const std::vector<const PassType*>& types) {
+    Out passes = Out::array();
+    for (const PassType* each : types) {
+        const PassType& type = *each;
         Out ports = Out::array();
         for (const PortInfo& port : type.ports)
             ports.push_back({{"name", port.name},
                              {"kind", portKindName(port.kind)},
                              {"direction", directionName(port.direction)},
                              {"optional", port.optional},
-                             {"sentence", port.sentence}});
+                             {"description", port.description}});
         Out properties = Out::array();
         for (const PropertyInfo& property : type.properties) properties.push_back(propertyJson(property));
-        json.push_back({{"name", type.name},
-                        {"sentence", type.sentence},
-                        {"plugin", type.plugin},
-                        {"ports", std::move(ports)},
-                        {"properties", std::move(properties)}});
+        passes.push_back({{"name", type.name},
+                          {"description", type.description},
+                          {"plugin", type.plugin},
+                          {"ports", std::move(ports)},
+                          {"properties", std::move(properties)}});
     }
-    return json.dump(2) + "\n";
+    return Out{{"passes", std::move(passes)}}.dump(2, ' ', false, Out::error_handler_t::replace) + "\n";
 }
 
 std::string graphSchema(const Registry& registry) {

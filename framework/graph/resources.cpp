@@ -257,6 +257,6 @@ private:
 
 } // namespace
 
-Plan giveOut(const Network& network, const Order& order) { return Builder(network, order).run(); }
+Plan allocateResources(const Network& network, const Order& order) { return Builder(network, order).run(); }
 
 } // namespace kestrel::compiler

@@ -60,10 +60,11 @@ Desc Desc::buffer(std::uint64_t bytes, Format texel) {
     return desc;
 }
 
-Desc Desc::module(Bits gives) {
+Desc Desc::module(Bits provides, Bits required) {
     Desc desc;
     desc.kind = ResourceKind::Module;
-    desc.gives = gives;
+    desc.provides = provides;
+    desc.required = required;
     return desc;
 }
 

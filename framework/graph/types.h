@@ -77,28 +77,29 @@ struct Extent {
 
 enum class ResourceKind : std::uint8_t { Texture2D, Texture2DArray, TextureCube, Texture3D, Buffer, Module };
 
-// Bits that modules give and consumers take (design: gives and takes).
+// What a module provides, what a consumer requests of it, and what it requires of others (design: provides,
+// requires, requests).
 using Bits = std::uint32_t;
-namespace gives {
+namespace provides {
 inline constexpr Bits Surface = 1 << 0; // normal and material at a hit, not the position alone
 inline constexpr Bits Snaps =
-    1 << 1; // can trace along a nearby candidate direction when the consumer bears it
+    1 << 1; // can trace along a nearby candidate direction when the consumer requests that
 inline constexpr Bits AlwaysSnaps = 1 << 2; // cannot trace the exact direction
 inline constexpr Bits Approximate =
     1 << 3; // hits are those of a proxy (voxels, distances), not of the triangles
-} // namespace gives
-namespace takes {
+} // namespace provides
+namespace requests {
 inline constexpr Bits AnyHit = 1 << 0;
 inline constexpr Bits ClosestHit = 1 << 1;
-inline constexpr Bits Surface = 1 << 2; // needs gives::Surface
-inline constexpr Bits BearsSnap =
-    1 << 3; // the direction may be replaced by a nearby one (defines TAKES_SNAP)
+inline constexpr Bits Surface = 1 << 2; // requires provides::Surface
+inline constexpr Bits Snap = 1 << 3; // the direction may be replaced by a nearby one (defines REQUESTS_SNAP)
 inline constexpr Bits AllHits = 1 << 4;
-} // namespace takes
-// What a radiance module needs of the hits that it is asked about, in Desc::gives of its port.
-namespace needs {
-inline constexpr Bits Surface = 1 << 8; // normal and material: consumers take takes::Surface of their tracer
-} // namespace needs
+} // namespace requests
+// What a radiance module requires of the hits that it is asked about, in Desc::required of its port.
+namespace required {
+inline constexpr Bits Surface =
+    1 << 0; // normal and material: consumers request requests::Surface of their tracer
+} // namespace required
 
 // Describes what stands behind a port.
 struct Desc {
@@ -108,14 +109,15 @@ struct Desc {
     int mips = 1;
     std::uint64_t bytes = 0; // of a buffer
     View view;
-    Bits gives = 0; // of a module
+    Bits provides = 0; // of a module
+    Bits required = 0; // of a radiance module: of the hits that it is asked about
     friend bool operator==(const Desc&, const Desc&) = default;
 
     static Desc texture2D(Format format, Extent extent, View view = {});
     static Desc texture3D(Format format, Extent extent, int mips = 1);
     static Desc array2D(Format format, Extent extent);
     static Desc buffer(std::uint64_t bytes, Format texel = Format::None);
-    static Desc module(Bits gives);
+    static Desc module(Bits provides, Bits required = 0);
     // Bytes of all mips and layers.
     [[nodiscard]] std::uint64_t totalBytes() const;
 };

@@ -92,9 +92,9 @@ struct Sweep {
     std::string text; // of the file, for the hash
     Extent size{640, 360, 1};
     int frames = 16;     // after which the picture is taken
-    int warmUp = 1;      // frames that are not timed, each time a variant has its turn
-    int repeats = 5;     // turns of each variant, round-robin
-    int timedFrames = 1; // a turn
+    int warmUp = 1;      // frames that are not timed, each time a variant is timed
+    int repeats = 5;     // repetitions of each variant, round-robin
+    int timedFrames = 1; // a repetition
     std::uint32_t seed = 0;
     bool moving = false;  // scenes move on from frame to frame; else their time stands still at 0
     bool rebuild = false; // everything is made anew in each timed frame, as in a scene that moves

@@ -87,14 +87,14 @@ std::string SweepFolder::heatMapName(const SweepUnit& unit, const SweepPoint& po
     return fmt::format("pictures/{}/{}.flip.png", unit.slug, point.slug);
 }
 
-std::string SweepFolder::truthName(const SweepScene& scene, const std::string& ending) const {
+std::string SweepFolder::referenceName(const SweepScene& scene, const std::string& ending) const {
     return fmt::format("{}/references/{}{}", ending == ".png" ? "pictures" : "parts", scene.slug, ending);
 }
 
-std::optional<SweepTruth> SweepFolder::truth(const SweepScene& scene) const {
-    const fs::path file = folder_ / truthName(scene, ".json");
+std::optional<SweepReferenceRecord> SweepFolder::reference(const SweepScene& scene) const {
+    const fs::path file = folder_ / referenceName(scene, ".json");
     if (!isThere(file)) return std::nullopt;
-    return truthOf(readText(file), file.string());
+    return referenceRecordOf(readText(file), file.string());
 }
 
 std::optional<SweepPicture> SweepFolder::picture(const SweepUnit& unit, const SweepPoint& point) const {
@@ -104,29 +104,31 @@ std::optional<SweepPicture> SweepFolder::picture(const SweepUnit& unit, const Sw
 }
 
 bool SweepFolder::hasTurn(const SweepUnit& unit, const SweepPoint& point, int round) const {
-    return isThere(pointFolder(unit, point) / fmt::format("turn-{}.json", round));
+    return isThere(pointFolder(unit, point) / fmt::format("repetition-{}.json", round));
 }
 
-std::vector<SweepTurn> SweepFolder::turns(const SweepUnit& unit, const SweepPoint& point) const {
-    std::vector<SweepTurn> result;
+std::vector<SweepRepetition> SweepFolder::repetitions(const SweepUnit& unit, const SweepPoint& point) const {
+    std::vector<SweepRepetition> result;
     for (int round = 0; round < sweep_.repeats; ++round) {
         if (!hasTurn(unit, point, round)) continue;
-        const fs::path file = pointFolder(unit, point) / fmt::format("turn-{}.json", round);
-        result.push_back(turnOf(readText(file), file.string()));
+        const fs::path file = pointFolder(unit, point) / fmt::format("repetition-{}.json", round);
+        result.push_back(repetitionOf(readText(file), file.string()));
     }
     return result;
 }
 
-void SweepFolder::write(const SweepScene& scene, const SweepTruth& truth) const {
-    writeFile(folder_ / truthName(scene, ".json"), partText(truth));
+void SweepFolder::write(const SweepScene& scene, const SweepReferenceRecord& record) const {
+    writeFile(folder_ / referenceName(scene, ".json"), partText(record));
 }
 
 void SweepFolder::write(const SweepUnit& unit, const SweepPoint& point, const SweepPicture& picture) const {
     writeFile(pointFolder(unit, point) / "picture.json", partText(picture));
 }
 
-void SweepFolder::write(const SweepUnit& unit, const SweepPoint& point, const SweepTurn& turn) const {
-    writeFile(pointFolder(unit, point) / fmt::format("turn-{}.json", turn.round), partText(turn));
+void SweepFolder::write(const SweepUnit& unit, const SweepPoint& point,
+                        const SweepRepetition& repetition) const {
+    writeFile(pointFolder(unit, point) / fmt::format("repetition-{}.json", repetition.round),
+              partText(repetition));
 }
 
 void SweepFolder::write(const SweepMachine& machine) const {
@@ -167,14 +169,14 @@ SweepResults SweepFolder::gather(const std::vector<SweepPoint>& points,
         results.machines.push_back(machineOf(readText(full), full.string()));
     }
     for (const SweepScene& scene : sweep_.scenes)
-        if (auto found = truth(scene)) results.truths.emplace(scene.name, std::move(*found));
+        if (auto found = reference(scene)) results.references.emplace(scene.name, std::move(*found));
     std::set<std::pair<double, double>> spins;
     for (const SweepUnit& unit : units) {
         const SweepScene& scene = sweep_.scenes[static_cast<size_t>(unit.scene)];
         for (const int index : unit.points) {
             const SweepPoint& point = points[static_cast<size_t>(index)];
             auto held = picture(unit, point);
-            const std::vector<SweepTurn> times = turns(unit, point);
+            const std::vector<SweepRepetition> times = repetitions(unit, point);
             if (!held || (held->failed.empty() && times.empty())) {
                 results.missing.push_back(scene.name + ": " + point.name);
                 continue;
@@ -190,14 +192,15 @@ SweepResults SweepFolder::gather(const std::vector<SweepPoint>& points,
             row.axes = point.axes;
             row.ray = point.ray;
             row.picture = std::move(*held);
-            if (const auto found = results.truths.find(scene.name);
-                found != results.truths.end() && !point.ray)
+            if (const auto found = results.references.find(scene.name);
+                found != results.references.end() && !point.ray)
                 row.referenceNoise = found->second.noise;
             addTimes(row, sweep_, times);
             if (row.machine.empty()) row.machine = row.picture.machine;
-            for (const SweepTurn& turn : times) // one spin test a round stands in every turn of it
-                if (spins.emplace(turn.spinOne, turn.spinTwo).second)
-                    results.spins[turn.machine].emplace_back(turn.spinOne, turn.spinTwo);
+            for (const SweepRepetition& repetition :
+                 times) // one spin test a round stands in every repetition of it
+                if (spins.emplace(repetition.spinOne, repetition.spinTwo).second)
+                    results.spins[repetition.machine].emplace_back(repetition.spinOne, repetition.spinTwo);
             row.command = renderCommand(sweep_, scene, point);
             row.timesCommand = fmt::format("kestrel sweep {} --size {}x{} --frames {} --only {} --out again",
                                            shellWord(sweep_.file.string()), sweep_.size.width,

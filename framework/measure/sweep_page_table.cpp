@@ -123,7 +123,7 @@ function header() {
     make('h1', {}, R.title), R.comment ? make('p', { class: 'soft' }, R.comment) : '',
     make('div', { class: 'facts' },
       [['size', R.size.join(' × ')], ['pictures after', R.frames + (R.frames === 1 ? ' frame' : ' frames')],
-        ['timed', `${R.repeats} turns of ${R.timed_frames}, in turn with all others`],
+        ['timed', `${R.repeats} repetitions of ${R.timed_frames}, in turn with all others`],
         ['each timed frame', R.rebuild ? 'builds everything anew' : 'goes on from the last'],
         ['kestrel', R.version + ' ' + R.configuration], ['results', rows.length - failed + (failed ? `, ${failed} failed` : '')]]
         .map(([k, v]) => make('span', {}, k + ' ', make('b', {}, v)))),

@@ -72,33 +72,33 @@ SweepMachine thisMachine(const std::string& renderer, const std::string& driver,
     return machine;
 }
 
-std::string partText(const SweepTurn& turn) {
+std::string partText(const SweepRepetition& repetition) {
     PartJson frames = PartJson::array();
-    for (const SweepFrame& frame : turn.frames) {
+    for (const SweepFrame& frame : repetition.frames) {
         PartJson steps = PartJson::array();
         for (const SweepFrame::Step& step : frame.steps)
             steps.push_back({step.pass, step.step, step.group, step.ms});
         frames.push_back({{"ms", frame.ms}, {"steps", steps}});
     }
-    return partDump({{"round", turn.round},
-                     {"machine", turn.machine},
-                     {"spin", {turn.spinOne, turn.spinTwo}},
+    return partDump({{"round", repetition.round},
+                     {"machine", repetition.machine},
+                     {"spin", {repetition.spinOne, repetition.spinTwo}},
                      {"frames", frames}});
 }
 
-SweepTurn turnOf(const std::string& text, const std::string& file) {
-    return readPart<SweepTurn>(text, file, [](const PartJson& json, SweepTurn& turn) {
-        turn.round = json.at("round").get<int>();
-        turn.machine = json.at("machine").get<std::string>();
-        turn.spinOne = json.at("spin").at(0).get<double>();
-        turn.spinTwo = json.at("spin").at(1).get<double>();
+SweepRepetition repetitionOf(const std::string& text, const std::string& file) {
+    return readPart<SweepRepetition>(text, file, [](const PartJson& json, SweepRepetition& repetition) {
+        repetition.round = json.at("round").get<int>();
+        repetition.machine = json.at("machine").get<std::string>();
+        repetition.spinOne = json.at("spin").at(0).get<double>();
+        repetition.spinTwo = json.at("spin").at(1).get<double>();
         for (const PartJson& item : json.at("frames")) {
             SweepFrame frame;
             frame.ms = item.at("ms").get<double>();
             for (const PartJson& step : item.at("steps"))
                 frame.steps.push_back({step.at(0).get<std::string>(), step.at(1).get<std::string>(),
                                        step.at(2).get<std::string>(), step.at(3).get<double>()});
-            turn.frames.push_back(std::move(frame));
+            repetition.frames.push_back(std::move(frame));
         }
     });
 }
@@ -156,25 +156,25 @@ SweepPicture pictureOf(const std::string& text, const std::string& file) {
     });
 }
 
-std::string partText(const SweepTruth& truth) {
-    return partDump({{"noise", optionalJson(truth.noise)},
-                     {"exposure", truth.exposure},
-                     {"picture", truth.picture},
-                     {"reports", truth.reports},
-                     {"hit_share", truth.hitShare},
-                     {"rays", truth.rays},
-                     {"rays_hash", truth.raysHash}});
+std::string partText(const SweepReferenceRecord& record) {
+    return partDump({{"noise", optionalJson(record.noise)},
+                     {"exposure", record.exposure},
+                     {"picture", record.picture},
+                     {"reports", record.reports},
+                     {"hit_share", record.hitShare},
+                     {"rays", record.rays},
+                     {"rays_hash", record.raysHash}});
 }
 
-SweepTruth truthOf(const std::string& text, const std::string& file) {
-    return readPart<SweepTruth>(text, file, [](const PartJson& json, SweepTruth& truth) {
-        truth.noise = optionalOf(json.at("noise"));
-        truth.exposure = json.at("exposure").get<double>();
-        truth.picture = json.at("picture").get<std::string>();
-        truth.reports = json.at("reports").get<std::map<std::string, double>>();
-        truth.hitShare = json.at("hit_share").get<double>();
-        truth.rays = json.at("rays").get<double>();
-        truth.raysHash = json.at("rays_hash").get<std::string>();
+SweepReferenceRecord referenceRecordOf(const std::string& text, const std::string& file) {
+    return readPart<SweepReferenceRecord>(text, file, [](const PartJson& json, SweepReferenceRecord& record) {
+        record.noise = optionalOf(json.at("noise"));
+        record.exposure = json.at("exposure").get<double>();
+        record.picture = json.at("picture").get<std::string>();
+        record.reports = json.at("reports").get<std::map<std::string, double>>();
+        record.hitShare = json.at("hit_share").get<double>();
+        record.rays = json.at("rays").get<double>();
+        record.raysHash = json.at("rays_hash").get<std::string>();
     });
 }
 

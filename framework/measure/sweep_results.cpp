@@ -1,4 +1,4 @@
-// Rows of a sweep: times over all turns, the Pareto front, results.json and results.csv.
+// Rows of a sweep: times over all repetitions, the Pareto front, results.json and results.csv.
 #include "measure/sweep_results.h"
 #include "core/version.h"
 #include "graph/value_text.h"
@@ -20,10 +20,11 @@ double sortedAt(const std::vector<double>& sorted, double fraction) {
     return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-// The machine that most turns are of.
-std::string mainMachine(const std::vector<SweepTurn>& turns) {
+// The machine that most repetitions are of.
+std::string mainMachine(const std::vector<SweepRepetition>& repetitions) {
     std::map<std::string, size_t> counts;
-    for (const SweepTurn& turn : turns) counts[turn.machine] += turn.frames.size();
+    for (const SweepRepetition& repetition : repetitions)
+        counts[repetition.machine] += repetition.frames.size();
     const auto most = std::ranges::max_element(counts, {}, [](const auto& count) { return count.second; });
     return most == counts.end() ? std::string() : most->first;
 }
@@ -155,11 +156,11 @@ RowJson documentJson(const Sweep& sweep, const SweepResults& results) {
     RowJson scenes = RowJson::array(), rows = RowJson::array(), times = RowJson::array();
     for (const SweepScene& scene : sweep.scenes) {
         RowJson json = {{"name", scene.name}, {"source", scene.source}, {"camera", scene.camera}};
-        if (const auto truth = results.truths.find(scene.name); truth != results.truths.end()) {
-            json["reference"] = truth->second.picture;
-            json["reference_noise"] = optionalNumber(truth->second.noise);
-            json["reference_reports"] = truth->second.reports;
-            if (truth->second.rays > 0) json["reference_hit_share"] = truth->second.hitShare;
+        if (const auto record = results.references.find(scene.name); record != results.references.end()) {
+            json["reference"] = record->second.picture;
+            json["reference_noise"] = optionalNumber(record->second.noise);
+            json["reference_reports"] = record->second.reports;
+            if (record->second.rays > 0) json["reference_hit_share"] = record->second.hitShare;
         }
         scenes.push_back(std::move(json));
     }
@@ -281,14 +282,14 @@ Quartiles quartilesOf(std::vector<double> series) {
     return {sortedAt(series, 0.25), sortedAt(series, 0.5), sortedAt(series, 0.75)};
 }
 
-void addTimes(SweepRow& row, const Sweep& sweep, const std::vector<SweepTurn>& turns) {
-    row.machine = mainMachine(turns);
+void addTimes(SweepRow& row, const Sweep& sweep, const std::vector<SweepRepetition>& repetitions) {
+    row.machine = mainMachine(repetitions);
     std::vector<std::map<std::string, double>> frames;
     std::map<std::string, std::vector<double>> bySteps;
     std::vector<std::string> order;
-    for (const SweepTurn& turn : turns) {
-        if (turn.machine != row.machine) continue;
-        for (const SweepFrame& frame : turn.frames) {
+    for (const SweepRepetition& repetition : repetitions) {
+        if (repetition.machine != row.machine) continue;
+        for (const SweepFrame& frame : repetition.frames) {
             frames.push_back(frameTimes(frame, sweep));
             std::map<std::string, double> ofFrame;
             for (const SweepFrame::Step& step : frame.steps) {

@@ -38,8 +38,8 @@ struct SweepFrame {
     std::vector<Step> steps;
 };
 
-// One turn of one point on one scene.
-struct SweepTurn {
+// One repetition of one point on one scene.
+struct SweepRepetition {
     int round = 0;
     std::string machine;
     double spinOne = 0, spinTwo = 0; // the spin test before this round, milliseconds
@@ -76,7 +76,7 @@ struct SweepPicture {
 };
 
 // The reference of a scene.
-struct SweepTruth {
+struct SweepReferenceRecord {
     std::optional<double> noise; // as its pass reports it
     double exposure = 1;         // that pictures of light are shown with
     std::string picture;
@@ -85,14 +85,14 @@ struct SweepTruth {
     std::string raysHash;
 };
 
-std::string partText(const SweepTurn& turn);
+std::string partText(const SweepRepetition& repetition);
 std::string partText(const SweepPicture& picture);
-std::string partText(const SweepTruth& truth);
+std::string partText(const SweepReferenceRecord& record);
 std::string partText(const SweepMachine& machine);
 // Throw InputError naming `file` for what is no such part.
-SweepTurn turnOf(const std::string& text, const std::string& file);
+SweepRepetition repetitionOf(const std::string& text, const std::string& file);
 SweepPicture pictureOf(const std::string& text, const std::string& file);
-SweepTruth truthOf(const std::string& text, const std::string& file);
+SweepReferenceRecord referenceRecordOf(const std::string& text, const std::string& file);
 SweepMachine machineOf(const std::string& text, const std::string& file);
 
 // ---- rows
@@ -112,9 +112,9 @@ struct SweepRow {
     std::string command, timesCommand; // make the picture again; measure the times again
 };
 
-// The times of a point over all its turns. Turns of several machines never mix: those of the machine with the
-// most count.
-void addTimes(SweepRow& row, const Sweep& sweep, const std::vector<SweepTurn>& turns);
+// The times of a point over all its repetitions. Repetitions of several machines never mix: those of the
+// machine with the most count.
+void addTimes(SweepRow& row, const Sweep& sweep, const std::vector<SweepRepetition>& repetitions);
 
 // Indices of the points that no other point beats: none is as good in both and better in one. In the order of
 // rising time. Points that are not finite are not on it.
@@ -130,8 +130,8 @@ struct SweepResults {
     std::string hash;
     std::vector<SweepMachine> machines;
     std::map<std::string, std::vector<std::pair<double, double>>>
-        spins;                                // machine -> spin tests (1, 2 threads)
-    std::map<std::string, SweepTruth> truths; // by scene
+        spins;                                              // machine -> spin tests (1, 2 threads)
+    std::map<std::string, SweepReferenceRecord> references; // by scene
     std::vector<SweepRow> rows;
     std::vector<std::string> missing; // "scene: point" that this folder does not hold
 };
@@ -163,13 +163,14 @@ public:
     // The hash of the results that it holds; empty if there are none.
     [[nodiscard]] std::string heldHash() const;
 
-    [[nodiscard]] std::optional<SweepTruth> truth(const SweepScene& scene) const;
+    [[nodiscard]] std::optional<SweepReferenceRecord> reference(const SweepScene& scene) const;
     [[nodiscard]] std::optional<SweepPicture> picture(const SweepUnit& unit, const SweepPoint& point) const;
-    [[nodiscard]] std::vector<SweepTurn> turns(const SweepUnit& unit, const SweepPoint& point) const;
+    [[nodiscard]] std::vector<SweepRepetition> repetitions(const SweepUnit& unit,
+                                                           const SweepPoint& point) const;
     [[nodiscard]] bool hasTurn(const SweepUnit& unit, const SweepPoint& point, int round) const;
-    void write(const SweepScene& scene, const SweepTruth& truth) const;
+    void write(const SweepScene& scene, const SweepReferenceRecord& record) const;
     void write(const SweepUnit& unit, const SweepPoint& point, const SweepPicture& picture) const;
-    void write(const SweepUnit& unit, const SweepPoint& point, const SweepTurn& turn) const;
+    void write(const SweepUnit& unit, const SweepPoint& point, const SweepRepetition& repetition) const;
     void write(const SweepMachine& machine) const;
 
     // Takes every part and picture of another folder of the same sweep. Throws InputError if that is of
@@ -186,7 +187,7 @@ public:
     // Relative to path().
     [[nodiscard]] std::string pictureName(const SweepUnit& unit, const SweepPoint& point) const;
     [[nodiscard]] std::string heatMapName(const SweepUnit& unit, const SweepPoint& point) const;
-    [[nodiscard]] std::string truthName(const SweepScene& scene, const std::string& ending) const;
+    [[nodiscard]] std::string referenceName(const SweepScene& scene, const std::string& ending) const;
 
 private:
     [[nodiscard]] std::filesystem::path pointFolder(const SweepUnit& unit, const SweepPoint& point) const;

@@ -19,8 +19,8 @@ namespace {
 
 using SweepClock = std::chrono::steady_clock;
 
-// Renderers stay alive between their turns while what they hold together is less; the others are made anew
-// for each turn.
+// Renderers stay alive between their repetitions while what they hold together is less; the others are made
+// anew for each repetition.
 constexpr std::uint64_t sweepMemory = std::uint64_t{6} << 30;
 
 double msSince(SweepClock::time_point start) {
@@ -66,7 +66,7 @@ public:
         , machine_(machine)
         , folder_(folder) {}
 
-    // How much there is to do, for progress: a picture counts as a turn.
+    // How much there is to do, for progress: a picture counts as a repetition.
     [[nodiscard]] int workOf(const std::vector<SweepUnit>& units, const SweepOptions& options) const {
         int work = 0;
         for (size_t i = 0; i < units.size(); ++i)
@@ -84,7 +84,7 @@ public:
 private:
     struct Candidate {
         const SweepPoint* point = nullptr;
-        std::unique_ptr<Renderer> renderer; // empty: made for each turn
+        std::unique_ptr<Renderer> renderer; // empty: made for each repetition
     };
 
     [[nodiscard]] static std::vector<int> chosenOf(const SweepUnit& unit, const SweepOptions& options) {
@@ -121,7 +121,7 @@ private:
         const SweepScene& scene = sweep_.scenes[static_cast<size_t>(unit.scene)];
         tell(scene.name, false);
         loaded_ = loadScene(scene.source, sweep_.file.has_parent_path() ? sweep_.file.parent_path() : ".");
-        takeTruth(scene);
+        takeReference(scene);
 
         std::vector<Candidate> candidates;
         std::uint64_t held = 0;
@@ -146,13 +146,13 @@ private:
                   int round) {
         std::optional<SpinTest> spin; // of a round in which there is something to do
         for (Candidate& candidate : candidates) {
-            const std::string what = fmt::format("{}: {}, turn {} of {}", scene.name, candidate.point->name,
-                                                 round + 1, sweep_.repeats);
+            const std::string what = fmt::format("{}: {}, repetition {} of {}", scene.name,
+                                                 candidate.point->name, round + 1, sweep_.repeats);
             if (!folder_.hasTurn(unit, *candidate.point, round)) {
                 if (!spin) spin = measureSpin();
-                SweepTurn turn{round, machine_.id, spin->oneThreadMs, spin->twoThreadsMs,
-                               timeTurn(candidate)};
-                folder_.write(unit, *candidate.point, turn);
+                SweepRepetition repetition{round, machine_.id, spin->oneThreadMs, spin->twoThreadsMs,
+                                           timeTurn(candidate)};
+                folder_.write(unit, *candidate.point, repetition);
             }
             tell(what, true);
         }
@@ -202,11 +202,11 @@ private:
 
     // ---- the reference
 
-    void takeTruth(const SweepScene& scene) {
-        truth_ = folder_.truth(scene).value_or(SweepTruth{});
-        const bool known = folder_.truth(scene).has_value();
+    void takeReference(const SweepScene& scene) {
+        referenceRecord_ = folder_.reference(scene).value_or(SweepReferenceRecord{});
+        const bool known = folder_.reference(scene).has_value();
         const auto file = [&](const char* ending) {
-            return folder_.path() / folder_.truthName(scene, ending);
+            return folder_.path() / folder_.referenceName(scene, ending);
         };
         reference_ = mask_ = Image();
         distances_.clear();
@@ -225,14 +225,15 @@ private:
             renderReference(scene);
             writeImage(file(".exr"), reference_, Encoding::Linear);
             if (!mask_.empty()) writeImage(file(".mask.exr"), mask_, Encoding::Linear);
-            truth_.picture = folder_.truthName(scene, ".png");
-            writePicture(folder_.path() / truth_.picture, reference_, sweep_.hdr, truth_.exposure);
+            referenceRecord_.picture = folder_.referenceName(scene, ".png");
+            writePicture(folder_.path() / referenceRecord_.picture, reference_, sweep_.hdr,
+                         referenceRecord_.exposure);
         }
         if (sweep_.rays) {
             traceReference(scene);
             writeFile(file(".hits"), std::as_bytes(std::span(distances_)));
         }
-        folder_.write(scene, truth_); // last: it says that the others are whole
+        folder_.write(scene, referenceRecord_); // last: it says that the others are whole
     }
 
     void renderReference(const SweepScene& scene) {
@@ -252,10 +253,10 @@ private:
                              fmt::format("the mask {} is 0 everywhere on the scene '{}': no pixel "
                                          "counts",
                                          asked.mask->text(), scene.name));
-        truth_.exposure = sweep_.hdr ? exposureFor(reference_) : 1;
-        truth_.reports = reportsOf(*renderer);
-        const auto noise = truth_.reports.find(asked.output.pass + ".noise");
-        if (noise != truth_.reports.end()) truth_.noise = noise->second;
+        referenceRecord_.exposure = sweep_.hdr ? exposureFor(reference_) : 1;
+        referenceRecord_.reports = reportsOf(*renderer);
+        const auto noise = referenceRecord_.reports.find(asked.output.pass + ".noise");
+        if (noise != referenceRecord_.reports.end()) referenceRecord_.noise = noise->second;
     }
 
     void traceReference(const SweepScene& scene) {
@@ -267,9 +268,9 @@ private:
         const std::vector<std::byte> rays = renderer->readBytes(asked.rays);
         distances_ = hitDistances(renderer->readBytes(asked.hits), rays);
         const SweepRayFigures figures = compareHits(rays, distances_, distances_);
-        truth_.rays = figures.rays;
-        truth_.hitShare = figures.hitShare;
-        truth_.raysHash = bytesHash(rays);
+        referenceRecord_.rays = figures.rays;
+        referenceRecord_.hitShare = figures.hitShare;
+        referenceRecord_.raysHash = bytesHash(rays);
     }
 
     // ---- pictures
@@ -320,7 +321,7 @@ private:
 
     void compareRays(Renderer& renderer, const SweepPoint& point, SweepPicture& picture) {
         const std::vector<std::byte> rays = renderer.readBytes(sweep_.rays->rays);
-        if (bytesHash(rays) != truth_.raysHash)
+        if (bytesHash(rays) != referenceRecord_.raysHash)
             throw InputError(point.where,
                              "traces other rays than the reference: graph, settings or frames that make "
                              "the rays differ");
@@ -337,7 +338,7 @@ private:
         if (std::isfinite(figures.psnr)) picture.errors->psnr = figures.psnr;
         picture.picture = folder_.pictureName(unit, point);
         picture.heatMap = folder_.heatMapName(unit, point);
-        writePicture(folder_.path() / picture.picture, image, sweep_.hdr, truth_.exposure);
+        writePicture(folder_.path() / picture.picture, image, sweep_.hdr, referenceRecord_.exposure);
         writeImage(folder_.path() / picture.heatMap, heatMap(map), Encoding::Linear);
     }
 
@@ -349,7 +350,7 @@ private:
         Renderer& renderer = own ? *own : *candidate.renderer;
         // A renderer that was just made has everything to build in its first frame.
         const int warmUp = sweep_.warmUp + (own && sweep_.warmUp == 0 ? 1 : 0);
-        if (sweep_.moving) renderer.restart(); // every turn sees the same frames
+        if (sweep_.moving) renderer.restart(); // every repetition sees the same frames
         for (int i = 0; i < warmUp; ++i) nextFrame(renderer);
         std::vector<SweepFrame> frames;
         for (int i = 0; i < sweep_.timedFrames; ++i) {
@@ -379,7 +380,7 @@ private:
 
     Scene loaded_;
     std::string camera_;
-    SweepTruth truth_;
+    SweepReferenceRecord referenceRecord_;
     Image reference_, mask_;
     std::vector<float> distances_; // of the reference's hits
 };

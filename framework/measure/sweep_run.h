@@ -1,4 +1,4 @@
-// Measures a sweep: renders, holds against the reference, and times the variants in turns.
+// Measures a sweep: renders, holds against the reference, and times the variants in turn.
 #pragma once
 #include "measure/sweep_results.h"
 #include <functional>

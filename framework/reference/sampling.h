@@ -38,8 +38,8 @@ inline glm::vec3 cosineDirection(const glm::vec2& u) {
 // order, which only a running sequence needs.
 inline glm::vec2 sobolPoint(std::uint32_t index, std::uint32_t seed) {
     const std::uint32_t x = shared::reverseBits32(shared::laineKarras(index, shared::hashCombine(seed, 1)));
-    const std::uint32_t y =
-        shared::reverseBits32(shared::laineKarras(shared::reversedSobol1(index), shared::hashCombine(seed, 2)));
+    const std::uint32_t y = shared::reverseBits32(
+        shared::laineKarras(shared::reversedSobol1(index), shared::hashCombine(seed, 2)));
     return {shared::unitFloat(x), shared::unitFloat(y)};
 }
 

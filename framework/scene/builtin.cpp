@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view prefix = "builtin:";
 
 struct Entry {
-    std::string_view name, sentence;
+    std::string_view name, description;
     Scene (*make)(builtin::Detail);
 };
 
@@ -94,7 +94,8 @@ bool isBuiltin(const std::string& source) { return source.starts_with(prefix); }
 
 std::vector<BuiltinInfo> builtinInfos() {
     std::vector<BuiltinInfo> all;
-    for (const Entry& entry : entries) all.push_back({std::string(entry.name), std::string(entry.sentence)});
+    for (const Entry& entry : entries)
+        all.push_back({std::string(entry.name), std::string(entry.description)});
     return all;
 }
 

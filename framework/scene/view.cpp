@@ -75,8 +75,8 @@ CameraState cameraAt(const Scene& scene, int camera, double time) {
 
 glm::mat4 CameraState::projection(float frameAspect) const {
     const double ratio = double(frameAspect);
-    // Pixels are square whatever frame the camera was made for; one that is narrower than that frame sees more
-    // above and below, so that nothing is lost.
+    // Pixels are square whatever frame the camera was made for; one that is narrower than that frame sees
+    // more above and below, so that nothing is lost.
     const double taller = std::max(1.0, double(aspect) / ratio);
     const double n = double(nearPlane), f = double(farPlane);
     glm::dmat4 matrix(0);

@@ -33,7 +33,8 @@ Declaration RayAmbientOcclusion::declare(const World& world, const Inputs& input
         declaration.problems.push_back(
             {"normal",
              fmt::format("is {} but depth is {}", describe(inputs["normal"].desc), describe(depth))});
-    const bool snaps = snap && (inputs["tracer"].desc.gives & (gives::Snaps | gives::AlwaysSnaps)) != 0;
+    const bool snaps =
+        snap && (inputs["tracer"].desc.provides & (provides::Snaps | provides::AlwaysSnaps)) != 0;
     const bool background = inputs["depth"].constant == glm::vec4(0);
     const bool weighted = demand.reads("weight");
 
@@ -56,7 +57,7 @@ Declaration RayAmbientOcclusion::declare(const World& world, const Inputs& input
               .uses = {{.port = "depth", .access = Access::Fetch},
                        {.port = "normal", .access = Access::Image},
                        {.port = "visibility", .access = Access::Image, .write = true}},
-              .modules = {{"tracer", takes::AnyHit | (snap ? takes::BearsSnap : 0)}}};
+              .modules = {{"tracer", requests::AnyHit | (snap ? requests::Snap : 0)}}};
     if (snaps) {
         if (estimator == Estimator::CosineRatio) step.defines.emplace("COSINE_RATIO", "1");
         // Between steps the sum of weights must live somewhere, also if nobody else reads it.

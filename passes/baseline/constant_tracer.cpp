@@ -13,7 +13,7 @@ PassType ConstantTracer::type() {
 
 Declaration ConstantTracer::declare(const World& world, const Inputs&, const Demand& demand) const {
     Declaration declaration;
-    declaration.outputs = {{.port = "tracer", .desc = Desc::module(gives::Approximate)}};
+    declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Approximate)}};
     if (!demand.reads("tracer")) return declaration;
     Module tracer{.port = "tracer",
                   .shader = "baseline/constant_tracer.glsl",

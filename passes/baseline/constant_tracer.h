@@ -5,8 +5,8 @@
 
 namespace kestrel {
 
-// Answers every ray alike, whatever the scene: it meets a surface after a set distance, or nothing. An effect's
-// time with a tracer less its time with this one is what tracing takes in it.
+// Answers every ray alike, whatever the scene: it meets a surface after a set distance, or nothing. An
+// effect's time with a tracer less its time with this one is what tracing takes in it.
 class ConstantTracer final : public Pass {
 public:
     static PassType type();

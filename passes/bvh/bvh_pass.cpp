@@ -52,8 +52,8 @@ Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& de
             .port = port, .shader = "bvh/bvh.glsl", .defines = {{define, "1"}}, .uses = reads, .modules = {}};
         declaration.modules.push_back(std::move(module));
     };
-    if (demand.reads("tracer")) provide("tracer", "PROVIDES_TRACER", gives::Surface);
-    if (demand.reads("hits")) provide("hits", "PROVIDES_HITS", gives::Surface);
+    if (demand.reads("tracer")) provide("tracer", "PROVIDES_TRACER", provides::Surface);
+    if (demand.reads("hits")) provide("hits", "PROVIDES_HITS", provides::Surface);
     declaration.steps.push_back({.name = "build",
                                  .shaders = {},
                                  .defines = {},

@@ -83,7 +83,7 @@ Declaration DistanceField::declare(const World& world, const Inputs& inputs, con
              fmt::format("is no occupancy map of 32, 64, 128 or 256 cells an edge: {}", describe(base))});
         return declaration;
     }
-    declaration.outputs = {{.port = "tracer", .desc = Desc::module(gives::Approximate)}};
+    declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Approximate)}};
     if (!demand.reads("tracer")) return declaration;
 
     Module tracer{.port = "tracer",

@@ -10,7 +10,7 @@ struct Target {
     const char* port;
     const char* define;
     Format format;
-    const char* sentence;
+    const char* description;
 };
 
 constexpr Target targets[] = {
@@ -53,7 +53,7 @@ PassType GBuffer::type() {
         "GBuffer", "Rasterizes what the camera sees first: depth, normals, position, material, motion");
     table.output("depth", PortKind::Texture,
                  "Reversed depth of the rasterizer: 1 at the near plane, 0 where nothing is");
-    for (const Target& target : targets) table.output(target.port, PortKind::Texture, target.sentence);
+    for (const Target& target : targets) table.output(target.port, PortKind::Texture, target.description);
     table.number("divisor", &GBuffer::divisor, 1, 16, "",
                  "Resolution per axis is that of the frame divided by this");
     table.number("guard", &GBuffer::guard, 0, 512, "pixels",

@@ -8,7 +8,7 @@ namespace {
 struct Part {
     const char* port;
     const char* define;
-    const char* sentence;
+    const char* description;
     float neutral; // a constant input of this value changes nothing and is left out
 };
 
@@ -31,7 +31,8 @@ constexpr Part compositeParts[] = {
 PassType Composite::type() {
     Describe<Composite> table("Composite", "Radiance that reaches the eye, from light and material");
     table.input("albedo", PortKind::Texture, "Linear base colour; a is 0 where nothing is");
-    for (const Part& part : compositeParts) table.optionalInput(part.port, PortKind::Texture, part.sentence);
+    for (const Part& part : compositeParts)
+        table.optionalInput(part.port, PortKind::Texture, part.description);
     table.output("result", PortKind::Texture, "Outgoing radiance; a is 1 where something is")
         .vector("ambient", &Composite::ambient, 0, 1e9, "radiance",
                 "Light from all sides besides the inputs: albedo times this, darkened by visibility");

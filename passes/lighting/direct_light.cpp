@@ -179,7 +179,7 @@ void DirectLight::declareModule(const World& world, const LightMapLayout& maps,
         if (maps.mapped) module.uses.push_back(shadowedLights[1]);
     }
     declaration.outputs.push_back(
-        {.port = "radiance", .desc = Desc::module(shines || maps.lights() > 0 ? needs::Surface : 0)});
+        {.port = "radiance", .desc = Desc::module(0, shines || maps.lights() > 0 ? required::Surface : 0)});
     declaration.modules.push_back(std::move(module));
     if (emission && !world.facts.hasEmission)
         declaration.leftOut.push_back({"emission", "no material emits light"});

@@ -16,15 +16,15 @@ Declaration RadianceSum::declare(const World&, const Inputs& inputs, const Deman
     Declaration declaration;
     Module module{
         .port = "radiance", .shader = "lighting/radiance_sum.glsl", .defines = {}, .uses = {}, .modules = {}};
-    Bits needed = 0;
+    Bits required = 0;
     for (const auto& [port, define] :
          {std::pair{"first", "FIRST"}, {"second", "SECOND"}, {"third", "THIRD"}, {"fourth", "FOURTH"}}) {
         if (!inputs.connected(port)) continue;
-        needed |= inputs[port].desc.gives;
+        required |= inputs[port].desc.required;
         module.defines.emplace(define, "1");
         module.modules.push_back({port, 0});
     }
-    declaration.outputs = {{.port = "radiance", .desc = Desc::module(needed)}};
+    declaration.outputs = {{.port = "radiance", .desc = Desc::module(0, required)}};
     declaration.modules.push_back(std::move(module));
     return declaration;
 }

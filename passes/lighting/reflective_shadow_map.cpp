@@ -11,7 +11,7 @@ struct MapTarget {
     const char* define;
     Format format;
     bool lookedUp; // by the module
-    const char* sentence;
+    const char* description;
 };
 
 constexpr MapTarget mapTargets[] = {
@@ -31,7 +31,8 @@ PassType ReflectiveShadowMap::type() {
                                         "What lights see, with the light that is reflected there");
     table.output("radiance", PortKind::Radiance,
                  "Light of the maps that leaves a hit, one diffuse reflection; needs positions only");
-    for (const MapTarget& target : mapTargets) table.output(target.port, PortKind::Texture, target.sentence);
+    for (const MapTarget& target : mapTargets)
+        table.output(target.port, PortKind::Texture, target.description);
     table.output("map_depth", PortKind::Texture, "Reversed depth of the maps")
         .output("maps", PortKind::Buffer, "How the maps lie (shared/light_map.h), and the lights")
         .number("resolution", &ReflectiveShadowMap::resolution, 16, 8192, "texels",

@@ -18,28 +18,28 @@ PassType NearFarTracer::type() {
 
 Declaration NearFarTracer::declare(const World&, const Inputs& inputs, const Demand& demand) const {
     Declaration declaration;
-    const Bits near = inputs["near"].desc.gives;
-    const Bits far = inputs["far"].desc.gives;
+    const Bits near = inputs["near"].desc.provides;
+    const Bits far = inputs["far"].desc.provides;
     if (reach == 0) {
         declaration.outputs = {{.port = "tracer", .desc = Desc::module(far), .same = "far"}};
         declaration.leftOut.push_back({"near tracer", "its reach is 0"});
         return declaration;
     }
-    const Bits given = (near & far & gives::Surface) | ((near | far) & gives::Approximate) |
-                       (far & (gives::Snaps | gives::AlwaysSnaps));
+    const Bits given = (near & far & provides::Surface) | ((near | far) & provides::Approximate) |
+                       (far & (provides::Snaps | provides::AlwaysSnaps));
     declaration.outputs = {{.port = "tracer", .desc = Desc::module(given)}};
     if (!demand.reads("tracer")) return declaration;
 
     // Both halves are asked for what the consumers take. A half that always snaps is refused by the framework
     // where nobody bears it, and the near one never bears it.
-    Bits taken =
-        demand.takes("tracer") & (takes::AnyHit | takes::ClosestHit | takes::Surface | takes::BearsSnap);
-    if ((given & gives::Surface) == 0) taken &= ~takes::Surface;
+    Bits taken = demand.requests("tracer") &
+                 (requests::AnyHit | requests::ClosestHit | requests::Surface | requests::Snap);
+    if ((given & provides::Surface) == 0) taken &= ~requests::Surface;
     declaration.modules.push_back({.port = "tracer",
                                    .shader = "near_field/near_far.glsl",
                                    .defines = {},
                                    .uses = {{.port = "settings", .access = Access::Uniform}},
-                                   .modules = {{"near", taken & ~takes::BearsSnap}, {"far", taken}}});
+                                   .modules = {{"near", taken & ~requests::Snap}, {"far", taken}}});
     declaration.outputs.push_back(
         {.port = "settings", .desc = Desc::buffer(sizeof(shared::NearFarSettings))});
     declaration.steps.push_back({.name = "settings",

@@ -21,7 +21,7 @@ PassType ScreenTrace::type() {
 
 Declaration ScreenTrace::declare(const World&, const Inputs& inputs, const Demand& demand) const {
     Declaration declaration;
-    declaration.outputs = {{.port = "tracer", .desc = Desc::module(gives::Approximate)}};
+    declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Approximate)}};
     if (!demand.reads("tracer")) return declaration;
     Module tracer{
         .port = "tracer", .shader = "near_field/screen_trace.glsl", .defines = {}, .uses = {}, .modules = {}};

@@ -50,7 +50,7 @@ Declaration OccupancyTrace::declare(const World& world, const Inputs& inputs, co
     Declaration declaration;
     const std::optional<int> resolution = mapResolution(inputs, declaration);
     if (!resolution) return declaration;
-    declaration.outputs = {{.port = "tracer", .desc = Desc::module(gives::Approximate)},
+    declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Approximate)},
                            {.port = "settings", .desc = Desc::buffer(sizeof(shared::OccupancySettings))}};
     if (!demand.reads("tracer")) return declaration;
 

@@ -45,7 +45,7 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
     const Desc& base = inputs["occupancy"].desc;
     const AlignedMaps maps = alignedMaps(*resolution, angular, 1, world.capabilities, declaration);
     if (!declaration.problems.empty()) return declaration;
-    declaration.outputs = {{.port = "tracer", .desc = Desc::module(gives::Snaps | gives::Approximate)}};
+    declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Snaps | provides::Approximate)}};
     if (!demand.reads("tracer")) return declaration;
 
     declaration.outputs.push_back({.port = "directions", .desc = maps.directionsDesc()});

@@ -79,7 +79,7 @@ Declaration RomaCascade::declare(const World& world, const Inputs&, const Demand
     }
     const AlignedMaps maps = alignedMaps(resolution, angular, levels, world.capabilities, declaration);
     if (!declaration.problems.empty()) return declaration;
-    declaration.outputs = {{.port = "tracer", .desc = Desc::module(gives::Snaps | gives::Approximate)}};
+    declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Snaps | provides::Approximate)}};
     if (!demand.reads("tracer")) return declaration;
 
     const auto count = static_cast<std::uint64_t>(levels);

@@ -40,20 +40,21 @@ Declaration GlossyReflection::declare(const World& world, const Inputs& inputs, 
     }
     declaration.outputs.push_back(std::move(result));
 
-    const bool surfaces = (inputs["radiance"].desc.gives & needs::Surface) != 0;
+    const bool surfaces = (inputs["radiance"].desc.required & required::Surface) != 0;
     if (!surfaces)
         declaration.leftOut.push_back({"normals and materials of hits", "the radiance needs only positions"});
-    Step step{.name = {},
-              .shaders = {"ray_effects/glossy_reflection.comp"},
-              .defines = {},
-              .uses = {{.port = "depth", .access = Access::Fetch},
-                       {.port = "normal", .access = Access::Image},
-                       // Read once a pixel: image units are kept for what a tracer reads at random.
-                       {.port = "albedo", .access = Access::Fetch},
-                       {.port = "material", .access = Access::Fetch},
-                       {.port = "result", .access = Access::Image, .write = true}},
-              .modules = {{"tracer", takes::ClosestHit | (surfaces ? takes::Surface : 0)}, {"radiance", 0}}};
-    if (surfaces) step.defines.emplace("NEEDS_SURFACE", "1");
+    Step step{
+        .name = {},
+        .shaders = {"ray_effects/glossy_reflection.comp"},
+        .defines = {},
+        .uses = {{.port = "depth", .access = Access::Fetch},
+                 {.port = "normal", .access = Access::Image},
+                 // Read once a pixel: image units are kept for what a tracer reads at random.
+                 {.port = "albedo", .access = Access::Fetch},
+                 {.port = "material", .access = Access::Fetch},
+                 {.port = "result", .access = Access::Image, .write = true}},
+        .modules = {{"tracer", requests::ClosestHit | (surfaces ? requests::Surface : 0)}, {"radiance", 0}}};
+    if (surfaces) step.defines.emplace("REQUIRES_SURFACE", "1");
     declaration.steps = raySteps(std::move(step), rays, world.facts);
     declaration.depends = Causes::Frame;
     return declaration;

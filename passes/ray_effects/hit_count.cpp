@@ -27,7 +27,7 @@ Declaration HitCount::declare(const World& world, const Inputs&, const Demand&) 
                                  .shaders = {"ray_effects/hit_count.comp"},
                                  .defines = materialDefines(world.facts),
                                  .uses = {{.port = "count", .access = Access::Image, .write = true}},
-                                 .modules = {{"hits", takes::AllHits}},
+                                 .modules = {{"hits", requests::AllHits}},
                                  .group = "tracing"});
     declaration.depends = Causes::Camera | Causes::Cut | Causes::Size | Causes::Properties;
     return declaration;

@@ -34,7 +34,8 @@ Declaration IndirectDiffuse::declare(const World& world, const Inputs& inputs, c
         declaration.problems.push_back(
             {"normal",
              fmt::format("is {} but depth is {}", describe(inputs["normal"].desc), describe(depth))});
-    const bool snaps = snap && (inputs["tracer"].desc.gives & (gives::Snaps | gives::AlwaysSnaps)) != 0;
+    const bool snaps =
+        snap && (inputs["tracer"].desc.provides & (provides::Snaps | provides::AlwaysSnaps)) != 0;
     const bool background = inputs["depth"].constant == glm::vec4(0);
     const bool weighted = demand.reads("weight");
 
@@ -51,19 +52,20 @@ Declaration IndirectDiffuse::declare(const World& world, const Inputs& inputs, c
     if (weighted && !snaps)
         declaration.leftOut.push_back({"weight", "the tracer traces the directions that were asked for"});
 
-    const bool surfaces = (inputs["radiance"].desc.gives & needs::Surface) != 0;
+    const bool surfaces = (inputs["radiance"].desc.required & required::Surface) != 0;
     if (!surfaces)
         declaration.leftOut.push_back({"normals and materials of hits", "the radiance needs only positions"});
-    Step step{.name = {},
-              .shaders = {"ray_effects/indirect_diffuse.comp"},
-              .defines = {},
-              .uses = {{.port = "depth", .access = Access::Fetch},
-                       {.port = "normal", .access = Access::Image},
-                       {.port = "result", .access = Access::Image, .write = true}},
-              .modules = {{"tracer", (surfaces ? takes::Surface | takes::ClosestHit : takes::ClosestHit) |
-                                         (snap ? takes::BearsSnap : 0)},
-                          {"radiance", 0}}};
-    if (surfaces) step.defines.emplace("NEEDS_SURFACE", "1");
+    Step step{
+        .name = {},
+        .shaders = {"ray_effects/indirect_diffuse.comp"},
+        .defines = {},
+        .uses = {{.port = "depth", .access = Access::Fetch},
+                 {.port = "normal", .access = Access::Image},
+                 {.port = "result", .access = Access::Image, .write = true}},
+        .modules = {{"tracer", (surfaces ? requests::Surface | requests::ClosestHit : requests::ClosestHit) |
+                                   (snap ? requests::Snap : 0)},
+                    {"radiance", 0}}};
+    if (surfaces) step.defines.emplace("REQUIRES_SURFACE", "1");
     if (snaps) {
         if (estimator == Estimator::CosineRatio) step.defines.emplace("COSINE_RATIO", "1");
         // Between steps the sum of weights must live somewhere, also if nobody else reads it.

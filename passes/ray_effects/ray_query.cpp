@@ -33,8 +33,8 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
               .defines = {{"GROUP_SIZE", std::to_string(groupSize)},
                           {"GROUPS_PER_ROW", std::to_string(groupsPerRow)}},
               .uses = {},
-              .modules = {{"tracer", (query == Query::Any ? takes::AnyHit : takes::ClosestHit) |
-                                         (snap ? takes::BearsSnap : 0)}},
+              .modules = {{"tracer", (query == Query::Any ? requests::AnyHit : requests::ClosestHit) |
+                                         (snap ? requests::Snap : 0)}},
               .group = "tracing"};
     step.defines.merge(materialDefines(world.facts));
     if (query == Query::Closest) step.defines.emplace("CLOSEST", "1");

@@ -120,7 +120,7 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
                                  .modules = {},
                                  .group = "generation"});
     // A proxy's hit may be the light's own surface, which only the distance tells.
-    const bool approximate = (inputs["tracer"].desc.gives & gives::Approximate) != 0;
+    const bool approximate = (inputs["tracer"].desc.provides & provides::Approximate) != 0;
     Step step{.name = {},
               .shaders = {"ray_effects/soft_shadow.comp"},
               .defines = {},
@@ -128,8 +128,8 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
                        {.port = "normal", .access = Access::Fetch},
                        {.port = "emitters", .access = Access::Image},
                        {.port = "result", .access = Access::Image, .write = true}},
-              .modules = {{"tracer", (approximate ? takes::ClosestHit : takes::AnyHit) |
-                                         (snap ? takes::BearsSnap : 0)}}};
+              .modules = {{"tracer", (approximate ? requests::ClosestHit : requests::AnyHit) |
+                                         (snap ? requests::Snap : 0)}}};
     if (meshes || rectangles) step.defines.emplace("FLAT_EMITTERS", "1");
     if (spheres) step.defines.emplace("SPHERE_EMITTERS", "1");
     if (approximate) step.defines.emplace("APPROXIMATE", "1");

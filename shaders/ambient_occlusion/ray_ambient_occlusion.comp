@@ -10,7 +10,7 @@
 #include "lib/sampling.glsl"
 #include "shared/random.h"
 #include "lib/tracer.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include <port:tracer>
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -36,9 +36,9 @@ void main() {
     uint seed = pixelSeed(uvec2(pixel), randomRayDirection, frame.seed);
 
     float open = 0.0, sum = 0.0;
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     for (uint i = 0u; i < uint(RAYS); ++i) {
-        TRIP;
+        ITERATION;
         vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);
         Ray ray = surfaceRay(origin, n, cosineHemisphere(u, n));
         if (maximumDistance > 0.0) ray.tMax = maximumDistance;
@@ -51,7 +51,7 @@ void main() {
         if (!tracer_anyHit(ray)) open += w;
         sum += w;
     }
-    TRIPS_END;
+    ITERATIONS_END;
 #ifdef CONTINUES
     // Between steps the images hold sums.
     open += imageLoad(visibility, pixel).r;

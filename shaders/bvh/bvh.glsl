@@ -2,7 +2,7 @@
 // the CPU mirror is framework/scene/bvh_trace.cpp.
 #include "lib/tracer.glsl"
 #include "lib/scene.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include "shared/bvh.h"
 #include "shared/triangle.h"
 
@@ -66,9 +66,9 @@ bool M(traverse)(Ray ray, bool stopAtFirst, out float t, out vec2 barycentrics, 
     t = tMax;
     barycentrics = vec2(0.0);
     while (true) {
-        TRIP;
+        ITERATION;
         while (!bvhIsLeaf(reference)) {
-            TRIP;
+            ITERATION;
             uint far;
             float farEntry;
             M(children)(reference, origin, inverse, ray.tMin, tMax, reference, far, farEntry);
@@ -81,7 +81,7 @@ bool M(traverse)(Ray ray, bool stopAtFirst, out float t, out vec2 barycentrics, 
         uint at = bvhLeafFirst(reference);
         uint end = at + bvhLeafCount(reference);
         for (; at < end; ++at) {
-            TRIP;
+            ITERATION;
             vec3 p0, p1, p2;
             uvec3 ids;
             M(triangleAt)(at, p0, p1, p2, ids);
@@ -119,7 +119,7 @@ bool M(anyHit)(Ray ray) {
     return M(traverse)(ray, true, t, barycentrics, triangle);
 }
 
-#if defined(TAKES_CLOSEST) || defined(TAKES_SURFACE)
+#if defined(REQUESTS_CLOSEST) || defined(REQUESTS_SURFACE)
 bool M(closestHit)(Ray ray, out Hit hit) {
     float t;
     vec2 barycentrics;
@@ -130,7 +130,7 @@ bool M(closestHit)(Ray ray, out Hit hit) {
 }
 #endif
 
-#ifdef TAKES_SURFACE
+#ifdef REQUESTS_SURFACE
 Surface M(surface)(Ray ray, Hit hit) { return sceneSurface(hit.id.x, unpackUnorm2x16(hit.id.y), ray.direction); }
 #endif
 
@@ -146,9 +146,9 @@ void M(all)(Ray ray) {
     uint reference = 0u;
     bool stopped = false;
     while (!stopped) {
-        TRIP;
+        ITERATION;
         while (!bvhIsLeaf(reference)) {
-            TRIP;
+            ITERATION;
             uint far;
             float farEntry;
             M(children)(reference, origin, inverse, ray.tMin, ray.tMax, reference, far, farEntry);
@@ -157,7 +157,7 @@ void M(all)(Ray ray) {
         uint at = bvhLeafFirst(reference);
         uint end = at + bvhLeafCount(reference);
         for (; at < end; ++at) {
-            TRIP;
+            ITERATION;
             vec3 p0, p1, p2;
             uvec3 ids;
             M(triangleAt)(at, p0, p1, p2, ids);

@@ -11,7 +11,7 @@
 // After ITERATIONS samples a ray counts as unoccluded. The reported t is where the threshold was met plus the distance
 // that was left there, kept within [tMin, tMax].
 #include "lib/tracer.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include "shared/occupancy.h"
 #include "shared/distance_field.h"
 
@@ -55,7 +55,7 @@ bool M(march)(Ray ray, out float t, out float rest) {
     if (!(t <= end)) return false;
     float level = 0.0;
     for (int i = 0; i < ITERATIONS; ++i) {
-        TRIP;
+        ITERATION;
 #ifdef BY_TRAVEL
         level = M(levelOf)(t * M(settings).widening);
 #endif

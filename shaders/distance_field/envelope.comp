@@ -5,7 +5,7 @@
 // ALONG_Y: lines along y; the distance along z comes from the bits of the map's columns. Otherwise lines along x, from
 // the squared distances `planes` that this left, and distances are written.
 #include "distance_field/half.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include "shared/occupancy.h"
 
 layout(local_size_x = 32, local_size_y = 2) in;
@@ -52,14 +52,14 @@ void main() {
     int stands[RESOLUTION];
     float heights[RESOLUTION];
     int top = -1;
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     for (int i = 0; i < RESOLUTION; ++i) {
-        TRIP;
+        ITERATION;
         float height = across(line, i);
         if (height >= none) continue;
         int begins = 0;
         while (top >= 0) {
-            TRIP;
+            ITERATION;
             int entry = stands[top];
             int stand = entry & 0xffff;
             float last = heights[top];
@@ -78,7 +78,7 @@ void main() {
         }
     }
     for (int i = RESOLUTION - 1; i >= 0; --i) {
-        TRIP;
+        ITERATION;
         float least = none;
         if (top >= 0) {
             int entry = stands[top];
@@ -92,5 +92,5 @@ void main() {
         imageStore(field, ivec3(i, line), vec4(nearestHalf(sqrt(least))));
 #endif
     }
-    TRIPS_END;
+    ITERATIONS_END;
 }

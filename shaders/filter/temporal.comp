@@ -83,7 +83,7 @@ void main() {
         }
 #ifdef SEARCH
         // With jitter a thin surface may have been seen by a neighbour only. Only leaving a loop saves work on a CPU
-        // driver: where the surface was found it ends after the first trip, which then counts nothing.
+        // driver: where the surface was found it ends after the first iteration, which then counts nothing.
         bool found = share > 0.01;
         ivec2 nearest = ivec2(clamp(floor(past.texel + 0.5), vec2(-2.0), vec2(size) + 1.0));
         int end = found ? 1 : 9;

@@ -1,9 +1,9 @@
 // Looking things up in maps made from lights (shared/light_map.h).
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include "shared/light_map.h"
 
 // Does `BODY` for each light of one kind: `slot` runs over [FIRST, FIRST + SLOTS) of a block, of which `count` are in use.
-// SLOTS is a constant and not 0: leave the whole out with #if where it is, since a loop without trips still takes the time of
+// SLOTS is a constant and not 0: leave the whole out with #if where it is, since a loop without iterations still takes the time of
 // one on a driver that masks. A single light takes no loop, for the same reason.
 #define EACH_LIGHT(slot, FIRST, SLOTS, count, BODY)                                                                          \
     if (SLOTS == 1) {                                                                                                        \
@@ -11,7 +11,7 @@
         BODY                                                                                                                 \
     } else {                                                                                                                 \
         for (uint slot = uint(FIRST); slot < uint(FIRST) + uint(SLOTS) && slot < uint(FIRST) + count; ++slot) {              \
-            TRIP;                                                                                                            \
+            ITERATION;                                                                                                            \
             BODY                                                                                                             \
         }                                                                                                                    \
     }

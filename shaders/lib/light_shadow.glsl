@@ -35,10 +35,10 @@ float shadowVisibility(sampler2DArray shadowMaps, LightMap map, vec3 position, v
         ivec2 first = ivec2(floor(place.texel - 0.5)) - (taps / 2 - 1);
         vec2 f = fract(place.texel - 0.5);
         for (int y = 0; y < taps; ++y) {
-            TRIP;
+            ITERATION;
             float wy = y == 0 ? 1.0 - f.y : y == taps - 1 ? f.y : 1.0;
             for (int x = 0; x < taps; ++x) {
-                TRIP;
+                ITERATION;
                 float wx = x == 0 ? 1.0 - f.x : x == taps - 1 ? f.x : 1.0;
                 blocked += wx * wy * shadowTap(shadowMaps, first + ivec2(x, y), place.layer, size - 1, depth);
             }

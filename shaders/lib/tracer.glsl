@@ -2,8 +2,8 @@
 //
 //     void M(aim)(inout Ray ray)                  fixes the direction that will really be traced, and says so
 //     bool M(anyHit)(Ray ray)                     is anything between tMin and tMax?
-//     bool M(closestHit)(Ray ray, out Hit hit)    the nearest of it             (if TAKES_CLOSEST or TAKES_SURFACE)
-//     Surface M(surface)(Ray ray, Hit hit)        evaluates a hit               (if TAKES_SURFACE)
+//     bool M(closestHit)(Ray ray, out Hit hit)    the nearest of it             (if REQUESTS_CLOSEST or REQUESTS_SURFACE)
+//     Surface M(surface)(Ray ray, Hit hit)        evaluates a hit               (if REQUESTS_SURFACE)
 //
 // A consumer fills a Ray, calls aim once, then traces. Everything is in render space.
 #include "lib/surface.glsl"
@@ -14,7 +14,7 @@
 struct Ray {
     vec3 origin;    // on a surface: the surface point itself; each tracer moves it off by its own measure
     vec3 normal;    // geometric normal at the origin, on the side the ray leaves to; zero if there is no surface
-    vec3 direction; // unit; aim may replace it by a nearby one where the consumer bears snapping (TAKES_SNAP)
+    vec3 direction; // unit; aim may replace it by a nearby one where the consumer bears snapping (REQUESTS_SNAP)
     float tMin;
     float tMax;     // rayInfinity: unbounded
     // Multiplied by aim: the cosine at `normal` of the direction really traced over the mean cosine of what could have

@@ -72,27 +72,27 @@ void main() {
 #endif
 
 #if POINT_LIGHTS > 0
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, 0, POINT_LIGHTS, counts.points, addPunctual(slot);)
 #endif
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     const uint spots = uint(POINT_LIGHTS);
 #if SPOT_LIGHTS > 0
     EACH_LIGHT(slot, spots, SPOT_LIGHTS, counts.spots, addPunctual(slot);)
 #endif
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     const uint directionals = spots + uint(SPOT_LIGHTS);
 #if DIRECTIONAL_LIGHTS > 0
     EACH_LIGHT(slot, directionals, DIRECTIONAL_LIGHTS, counts.directionals, addPunctual(slot);)
 #endif
 #ifdef OUT_RESULT
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     const uint rectangles = directionals + uint(DIRECTIONAL_LIGHTS);
 #if RECTANGLE_LIGHTS > 0
     EACH_LIGHT(slot, rectangles, RECTANGLE_LIGHTS, counts.rectangles,
                irradiance += rectangleLight(lights[slot], position, n) * visible(slot);)
 #endif
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     const uint spheres = rectangles + uint(RECTANGLE_LIGHTS);
 #if SPHERE_LIGHTS > 0
     EACH_LIGHT(slot, spheres, SPHERE_LIGHTS, counts.spheres,
@@ -100,7 +100,7 @@ void main() {
 #endif
     imageStore(result, pixel, vec4(background ? vec3(0.0) : min(irradiance / pi, vec3(lightMaximum)), 1.0));
 #endif
-    TRIPS_END;
+    ITERATIONS_END;
 #ifdef OUT_SPECULAR
     imageStore(specular, pixel, vec4(background ? vec3(0.0) : min(glossy, vec3(lightMaximum)), 1.0));
 #endif

@@ -54,7 +54,7 @@ vec3 gathered(uint slot, uint seed, uint first) {
     float disk = radius * width;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < uint(SAMPLES); ++i) {
-        TRIP;
+        ITERATION;
         vec2 x = scrambledSobol(first + i, seed);
         vec2 uv = centre + disk * x.x * vec2(cos(2.0 * pi * x.y), sin(2.0 * pi * x.y));
         float r2 = dot(uv, uv);
@@ -104,28 +104,28 @@ void main() {
 
     vec3 light = vec3(0.0);
 #if POINT_LIGHTS > 0
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, 0, POINT_LIGHTS, counts.points, light += gathered(slot, hashCombine(seed, slot), first);)
 #endif
 #if SPOT_LIGHTS > 0
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, POINT_LIGHTS, SPOT_LIGHTS, counts.spots, light += gathered(slot, hashCombine(seed, slot), first);)
 #endif
 #if DIRECTIONAL_LIGHTS > 0
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS, DIRECTIONAL_LIGHTS, counts.directionals,
                light += gathered(slot, hashCombine(seed, slot), first);)
 #endif
 #if RECTANGLE_LIGHTS > 0
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, counts.rectangles,
                light += gathered(slot, hashCombine(seed, slot), first);)
 #endif
 #if SPHERE_LIGHTS > 0
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS + RECTANGLE_LIGHTS, SPHERE_LIGHTS, counts.spheres,
                light += gathered(slot, hashCombine(seed, slot), first);)
 #endif
-    TRIPS_END;
+    ITERATIONS_END;
     imageStore(result, pixel, vec4(background ? vec3(0.0) : min(light, vec3(1e30)), 1.0));
 }

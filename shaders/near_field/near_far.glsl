@@ -29,7 +29,7 @@ bool M(anyHit)(Ray ray) {
     return M(far_anyHit)(M(farPart)(ray, answered)) || answered;
 }
 
-#if defined(TAKES_CLOSEST) || defined(TAKES_SURFACE)
+#if defined(REQUESTS_CLOSEST) || defined(REQUESTS_SURFACE)
 bool M(closestHit)(Ray ray, out Hit hit) {
     Hit beyond;
     bool answered = M(near_closestHit)(M(nearPart)(ray), hit);
@@ -42,7 +42,7 @@ bool M(closestHit)(Ray ray, out Hit hit) {
 }
 #endif
 
-#ifdef TAKES_SURFACE
+#ifdef REQUESTS_SURFACE
 Surface M(surface)(Ray ray, Hit hit) {
     bool isFar = (hit.source & 1u) != 0u;
     hit.source >>= 1u;

@@ -10,7 +10,7 @@
 // pixel: depths of the pixel beside differ from those on the ray by up to half a pixel's slope.
 #include "lib/frame.glsl"
 #include "lib/tracer.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include "lib/view.glsl"
 #include "shared/near_field.h"
 #include "shared/random.h"
@@ -77,7 +77,7 @@ bool M(march)(Ray ray, out float t, out float error) {
     float before = from;
     bool found = false;
     for (int i = 0; i < STEPS; ++i) {
-        TRIP;
+        ITERATION;
         float s = (skipped + float(i) * M(settings).stride) * inversePixels;
         // A ray within one pixel has its end for a sample; one from a surface has none, since that pixel is its own.
         if (i == 0 && !onSurface) s = min(s, 1.0);

@@ -43,7 +43,7 @@ struct ColumnWalk {
     float from;   // the ray's way within the column
     float end;
     float to;     // where the ray ends
-    bool some;    // it meets the map
+    bool intersects;    // it meets the map
 };
 
 ColumnWalk beginWalk(vec3 origin, vec3 direction, float from, float to, int resolution) {
@@ -58,7 +58,7 @@ ColumnWalk beginWalk(vec3 origin, vec3 direction, float from, float to, int reso
     vec3 farther = max(low, high);
     walk.from = max(from, max(nearer.x, max(nearer.y, nearer.z)));
     walk.to = min(to, min(farther.x, min(farther.y, farther.z)));
-    walk.some = walk.from <= walk.to;
+    walk.intersects = walk.from <= walk.to;
     walk.at = clamp(ivec2(floor(origin.xy + walk.from * direction.xy)), ivec2(0), ivec2(resolution - 1));
     walk.onward = ivec2(direction.x < 0.0 ? -1 : 1, direction.y < 0.0 ? -1 : 1);
     walk.leave = (vec2(walk.at + max(walk.onward, ivec2(0))) - origin.xy) * walk.inverse.xy;

@@ -3,7 +3,7 @@
 // share the columns of a listed triangle.
 //
 // Triangles with an alpha test occupy a cell where the test passes at the point of the triangle over the cell's centre.
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include "lib/scene.glsl"
 #include "shared/occupancy.h"
 #include "shared/triangle_cell.h"
@@ -35,7 +35,7 @@ uniform int triangleCount;
 
 const uint largeSlices = 16u;
 const uint maxGroups = 65535u;
-// More columns than this in the bounding box make a triangle large. Each takes up to RESOLUTION + 1 trips.
+// More columns than this in the bounding box make a triangle large. Each takes up to RESOLUTION + 1 iterations.
 const int smallColumns = 64;
 
 // Weights of the triangle's second and third corner where its plane is over the cell's centre, kept inside it.
@@ -65,7 +65,7 @@ Corners cornersOf(uint triangle) {
 void markColumn(uint triangle, Corners corners, TriangleWalk walk, int x, int y) {
     ivec2 range = walkColumn(walk, x, y);
     for (int z = range.x; z <= range.y; ++z) {
-        TRIP;
+        ITERATION;
         ivec3 cell = axisBack(ivec3(x, y, z), walk.axis);
         vec3 centre = vec3(cell) + 0.5;
         vec3 a = corners.a - centre;
@@ -90,13 +90,13 @@ void main() {
     TriangleWalk walk = triangleWalk(corners.a, corners.b, corners.c, RESOLUTION);
     // Tiles of the group's size over the box, dealt out to the slices in turn.
     ivec2 tiles = (walk.last.xy - walk.first.xy) / 8 + 1;
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     for (int tile = int(gl_WorkGroupID.x); tile < tiles.x * tiles.y; tile += int(largeSlices)) {
-        TRIP;
+        ITERATION;
         ivec2 at = walk.first.xy + 8 * ivec2(tile % tiles.x, tile / tiles.x) + ivec2(gl_LocalInvocationID.xy);
         if (at.x <= walk.last.x && at.y <= walk.last.y) markColumn(triangle, corners, walk, at.x, at.y);
     }
-    TRIPS_END;
+    ITERATIONS_END;
 }
 
 #else
@@ -117,12 +117,12 @@ void main() {
         atomicMax(large.groupsZ, place / maxGroups + 1u);
         columns = 0;
     }
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     for (int i = 0; i < columns; ++i) {
-        TRIP;
+        ITERATION;
         markColumn(triangle, corners, walk, walk.first.x + i % size.x, walk.first.y + i / size.x);
     }
-    TRIPS_END;
+    ITERATIONS_END;
 }
 
 #endif

@@ -19,7 +19,7 @@
 // lib/occupancy.glsl for where it begins; the reported t is the middle of the ray's way through the cell, kept within
 // [tMin, tMax]. After ITERATIONS cells, words or columns (of any level) the ray counts as unoccluded.
 #include "lib/occupancy.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 
 layout(std140) uniform M(Grid) { OccupancyGrid M(grid); };
 layout(std140) uniform M(Settings) { OccupancySettings M(settings); };
@@ -93,7 +93,7 @@ struct M(Line) {
     ivec3 flip;  // exclusive or with it takes a cell to its mirror image, along the axes that the ray goes down
     float start; // where the line begins along the ray
     float to;    // where it ends, from there
-    bool some;
+    bool intersects;
 };
 
 M(Line) M(line)(Ray ray) {
@@ -108,9 +108,9 @@ M(Line) M(line)(Ray ray) {
     vec3 farther = (vec3(RESOLUTION) - origin) * line.inverse;
     float from = max(occupancyBegin(M(grid), M(settings), ray), max(nearer.x, max(nearer.y, nearer.z)));
     float to = min(ray.tMax * M(grid).inverseCellSize, min(farther.x, min(farther.y, farther.z)));
-    line.some = from <= to;
-    line.start = line.some ? from : 0.0;
-    line.to = line.some ? to - from : -1.0;
+    line.intersects = from <= to;
+    line.start = line.intersects ? from : 0.0;
+    line.to = line.intersects ? to - from : -1.0;
     line.origin = clamp(origin + line.start * line.direction, vec3(0.0), vec3(RESOLUTION));
     return line;
 }
@@ -156,10 +156,10 @@ bool M(walk)(M(Line) line, out ivec3 cell) {
     int last = at.z; // a step tests the cells from at.z to `last`
     int level = 0;
     bool found = false;
-    bool finished = !line.some;
-    if (line.some) {
+    bool finished = !line.intersects;
+    if (line.intersects) {
         for (int i = 0; i < ITERATIONS; ++i) {
-            TRIP;
+            ITERATION;
 #if METHOD == 0
             ivec3 real = at ^ line.flip;
             uint word = MAP_WORD(occupancyWord(real.x, real.y, real.z, RESOLUTION));

@@ -1,6 +1,6 @@
 // The module `tracer` by a ray-aligned occupancy map array (ROMA, section 4.2). See shared/roma.h and shared/occupancy.h.
 //
-// Snapping (the consumer defines TAKES_SNAP). The consumer draws a direction w with density cos(n, w) / pi around the
+// Snapping (the consumer defines REQUESTS_SNAP). The consumer draws a direction w with density cos(n, w) / pi around the
 // normal n. aim finds the stratum S that w (or -w) lies in and traces its candidate c instead: S is chosen with
 // probability P(S) = integral over S of max(0, n.w) / pi, and c is uniform in S over the frames, since candidates are
 // jittered within their strata. With f(S) the mean of max(0, n.w) over S, weight = max(0, n.c) / f(S) gives
@@ -21,7 +21,7 @@
 // Algorithm 2 as printed tests signed words (an occupied top cell reads as a miss), shifts by 32, loses half a cell on one
 // of the two ways, and transforms the direction like a point; here words are unsigned, masks are built of shifts below
 // 32, and directions are rotated only.
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include "occupancy/aligned.glsl"
 
 #if WORDS == 1
@@ -52,7 +52,7 @@ layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
 
 void M(aim)(inout Ray ray) {
     aimAligned(ray, ANGULAR);
-#ifdef TAKES_SNAP
+#ifdef REQUESTS_SNAP
     snapAligned(ray, M(candidate)(alignedMap(ray)));
 #endif
 }
@@ -87,7 +87,7 @@ vec3 M(alignedOrigin)(Ray ray, vec3 axis) {
     return align(occupancyOrigin(M(grid), M(settings)(), ray), axis) + vec3(RESOLUTION / 2);
 }
 
-#ifdef TAKES_SNAP
+#ifdef REQUESTS_SNAP
 
 // Where a snapped ray goes: one column, and the cells from `first` to `last` in it.
 struct M(Way) {
@@ -97,7 +97,7 @@ struct M(Way) {
     int last;
     float z; // of the origin, cells
     bool up;
-    bool some; // it meets the map
+    bool intersects; // it meets the map
 };
 
 M(Way) M(way)(Ray ray) {
@@ -111,20 +111,20 @@ M(Way) M(way)(Ray ray) {
     way.first = cellAt(way.up ? origin.z + from : origin.z - to, RESOLUTION);
     way.last = cellAt(way.up ? origin.z + to : origin.z - from, RESOLUTION);
     way.z = origin.z;
-    way.some = hasColumn(way.at, RESOLUTION) && from <= to;
+    way.intersects = hasColumn(way.at, RESOLUTION) && from <= to;
     return way;
 }
 
 bool M(anyHit)(Ray ray) {
     M(Way) way = M(way)(ray);
-    if (!way.some) return false;
+    if (!way.intersects) return false;
     return columnAny(columnPart(M(column)(way.map, way.at), way.first, way.last));
 }
 
 bool M(closestHit)(Ray ray, out Hit hit) {
     hit = noHit;
     M(Way) way = M(way)(ray);
-    if (!way.some) return false;
+    if (!way.intersects) return false;
     int cell = columnFirst(columnPart(M(column)(way.map, way.at), way.first, way.last), way.up);
     if (cell < 0) return false;
     float t = (way.up ? 1.0 : -1.0) * (float(cell) + 0.5 - way.z) * M(grid).cellSize;
@@ -143,11 +143,11 @@ int M(walk)(Ray ray, bool nearest, out float t) {
     t = 0.0;
     ColumnWalk walk = beginWalk(M(alignedOrigin)(ray, axis), align(ray.direction, axis),
                                 occupancyBegin(M(grid), M(settings)(), ray), ray.tMax * M(grid).inverseCellSize, RESOLUTION);
-    if (!walk.some) return -1;
+    if (!walk.intersects) return -1;
     int cell = -1;
     bool finished = false;
     for (int i = 0; i < ITERATIONS; ++i) {
-        TRIP;
+        ITERATION;
         cell = walkCell(walk, M(column)(map, walk.at), RESOLUTION);
         if (cell >= 0) {
             if (nearest) t = walkMiddle(walk, cell);
@@ -182,7 +182,7 @@ bool M(closestHit)(Ray ray, out Hit hit) {
     return true;
 }
 
-#endif // TAKES_SNAP
+#endif // REQUESTS_SNAP
 #endif // EMPTY
 #undef TEXEL
 #undef TEXEL_TYPE

@@ -8,7 +8,7 @@
 // at most: before the finer sphere and beyond it. Where both end a cell is looked up by either.
 //
 // Offset and skip are those of each level's own cells: a coarse cell of the surface that the ray left must not occlude it.
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include "occupancy/aligned.glsl"
 
 #if WORDS == 1
@@ -39,7 +39,7 @@ layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
 
 void M(aim)(inout Ray ray) {
     aimAligned(ray, ANGULAR);
-#ifdef TAKES_SNAP
+#ifdef REQUESTS_SNAP
     snapAligned(ray, M(candidate)(alignedMap(ray)));
 #endif
 }
@@ -102,7 +102,7 @@ vec3 M(alignedOrigin)(Ray ray, OccupancyGrid grid, vec3 axis) {
     return align(occupancyOrigin(grid, M(settings)(), ray), axis) + vec3(RESOLUTION / 2);
 }
 
-#ifdef TAKES_SNAP
+#ifdef REQUESTS_SNAP
 
 // The part of a column that the ray passes on a stretch of it.
 OccupancyColumn M(stretchOf)(OccupancyColumn column, float z, bool up, vec2 stretch) {
@@ -137,13 +137,13 @@ float M(find)(Ray ray, int level, OccupancyGrid grid, vec2 own, vec2 finer, out 
     cell = -1;
     bool finished = true;
     for (int part = 0; part < 2; ++part) {
-        TRIP;
+        ITERATION;
         vec2 stretch = part == 0 ? stretches.xy : stretches.zw;
         ColumnWalk walk = beginWalk(origin, direction, stretch.x, stretch.y, RESOLUTION);
-        if (cell >= 0 || !walk.some) continue;
+        if (cell >= 0 || !walk.intersects) continue;
         finished = false;
         for (int i = 0; i < ITERATIONS; ++i) {
-            TRIP;
+            ITERATION;
             cell = walkCell(walk, M(column)(level, map, walk.at), RESOLUTION);
             if (cell >= 0) t = walkMiddle(walk, cell) * grid.cellSize;
             if (cell >= 0 || !walkOn(walk, RESOLUTION)) {
@@ -167,7 +167,7 @@ bool M(search)(Ray ray, bool nearest, out Hit hit) {
     vec2 finer = vec2(M(nowhere), -M(nowhere));
     float best = M(nowhere);
     for (int level = 0; level < LEVELS; ++level) {
-        TRIP;
+        ITERATION;
         OccupancyGrid grid = M(grids)[level];
         vec2 own = M(throughSphere)(ray, grid);
         int cell;

@@ -40,7 +40,7 @@ void main() {
     ivec3 stepZ = 2 * halfZ;
     const int outside = ~((1 << whole) - 1);
 
-    // What all of an invocation's cells hit is set in one loop: neighbours then make about as many trips.
+    // What all of an invocation's cells hit is set in one loop: neighbours then make about as many iterations.
     uint hits = 0u; // bit 8 i + n: candidate n of cell i
     ivec3 first[scatterCells];
     uint at = gl_WorkGroupID.x * (scatterGroup * scatterCells) + gl_LocalInvocationID.x;

@@ -7,7 +7,7 @@
 #include "shared/ggx.h"
 #include "lib/tracer.glsl"
 #include "lib/radiance.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include <port:tracer>
 #include <port:radiance>
 
@@ -40,9 +40,9 @@ void main() {
     uint seed = pixelSeed(uvec2(pixel), randomGlossy, frame.seed);
 
     vec3 light = vec3(0.0);
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     for (uint i = 0u; i < uint(RAYS); ++i) {
-        TRIP;
+        ITERATION;
         vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);
         vec3 facet = ggxVisibleNormal(view, alpha, u);
         vec3 leaving = 2.0 * dot(view, facet) * facet - view;
@@ -54,7 +54,7 @@ void main() {
         Hit hit;
         vec3 arriving;
         if (tracer_closestHit(ray, hit)) {
-#ifdef NEEDS_SURFACE
+#ifdef REQUIRES_SURFACE
             arriving = radiance_surface(tracer_surface(ray, hit), -ray.direction);
 #else
             arriving = radiance_surface(facingSurface(ray, hit), -ray.direction);
@@ -65,7 +65,7 @@ void main() {
         vec3 share = schlickFresnel(f0, dot(view, facet)) * ggxShadowing(view.z, leaving.z, alpha);
         if (up) light += share * arriving;
     }
-    TRIPS_END;
+    ITERATIONS_END;
 #ifdef CONTINUES
     light += imageLoad(result, pixel).rgb; // between steps the image holds sums
 #endif

@@ -1,7 +1,7 @@
 // One ray a pixel through its centre, from the near to the far plane.
 #include "lib/view.glsl"
 #include "lib/hits.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 
 uint counted = 0u;
 bool hits_visit(inout Ray ray, Hit hit) {
@@ -24,8 +24,8 @@ void main() {
     Ray ray = surfaceRay(origin, vec3(0.0), direction);
     ray.tMin = tNear;
     ray.tMax = tFar;
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     hits_all(ray);
-    TRIPS_END;
+    ITERATIONS_END;
     imageStore(count, pixel, vec4(float(counted)));
 }

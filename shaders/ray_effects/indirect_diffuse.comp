@@ -7,7 +7,7 @@
 #include "shared/random.h"
 #include "lib/tracer.glsl"
 #include "lib/radiance.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include <port:tracer>
 #include <port:radiance>
 
@@ -35,9 +35,9 @@ void main() {
 
     vec3 light = vec3(0.0);
     float sum = 0.0;
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     for (uint i = 0u; i < uint(RAYS); ++i) {
-        TRIP;
+        ITERATION;
         vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);
         Ray ray = surfaceRay(origin, n, cosineHemisphere(u, n));
         if (maximumDistance > 0.0) ray.tMax = maximumDistance;
@@ -51,7 +51,7 @@ void main() {
         Hit hit;
         vec3 arriving;
         if (tracer_closestHit(ray, hit)) {
-#ifdef NEEDS_SURFACE
+#ifdef REQUIRES_SURFACE
             arriving = radiance_surface(tracer_surface(ray, hit), -ray.direction);
 #else
             arriving = radiance_surface(facingSurface(ray, hit), -ray.direction);
@@ -62,7 +62,7 @@ void main() {
         light += w * arriving;
         sum += w;
     }
-    TRIPS_END;
+    ITERATIONS_END;
 #ifdef CONTINUES
     // Between steps the images hold sums.
     light += imageLoad(result, pixel).rgb;

@@ -1,7 +1,7 @@
 // Each invocation traces one ray of the buffer.
 #include "shared/ray.h"
 #include "lib/tracer.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include <port:tracer>
 
 layout(local_size_x = GROUP_SIZE) in;
@@ -34,14 +34,14 @@ void main() {
     ray.tMax = exists ? ray.tMax : -1.0;
     tracer_aim(ray);
     Hit hit = noHit;
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
 #ifdef CLOSEST
     bool met = tracer_closestHit(ray, hit) && exists;
 #else
     bool met = tracer_anyHit(ray) && exists;
     hit.t = 0.0;
 #endif
-    TRIPS_END;
+    ITERATIONS_END;
     float t = met ? hit.t : rayInfinity;
 #ifdef DISTANCES
     distances[id] = t;

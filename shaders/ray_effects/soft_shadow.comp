@@ -6,7 +6,7 @@
 #include "shared/random.h"
 #include "shared/emitter.h"
 #include "lib/tracer.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include <port:tracer>
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -35,7 +35,7 @@ uint chooseEmitter(float x) {
     uint low = 0u;
     uint high = max(emitterCount, 1u) - 1u;
     while (low < high) {
-        TRIP;
+        ITERATION;
         uint middle = (low + high) / 2u;
         if (emitterUpper(middle) > x) {
             high = middle;
@@ -155,9 +155,9 @@ void main() {
 
     vec3 light = vec3(0.0);
     float blocked = 0.0; // how bright what does not arrive is
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     for (uint i = 0u; i < uint(RAYS); ++i) {
-        TRIP;
+        ITERATION;
         vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);
         LightSample point = sampleLight(origin, n, u);
         float bright = luminance(point.light);
@@ -169,7 +169,7 @@ void main() {
         if (some && arrives) light += point.light;
         if (some && !arrives) blocked += bright;
     }
-    TRIPS_END;
+    ITERATIONS_END;
 #ifdef CONTINUES
     // Between steps the image holds sums.
     vec4 before = imageLoad(result, pixel);

@@ -82,7 +82,7 @@ def test_passes_lists_and_tells():
     assert "angular" in done("passes", "Roma").out
     table = done("passes", "--json").json()["passes"]
     roma = [item for item in table if item["name"] == "Roma"][0]
-    assert {"name", "direction", "kind", "optional", "sentence"} <= set(roma["ports"][0])
+    assert {"name", "direction", "kind", "optional", "description"} <= set(roma["ports"][0])
     assert "did you mean 'Roma'" in refused("passes", "Rmoa")[0]
     assert "$schema" in json.loads(done("passes", "--schema").out)
 

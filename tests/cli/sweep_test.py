@@ -122,7 +122,7 @@ def test_goes_on_after_it_was_killed():
         out = Path(here) / "stopped"
         run = subprocess.Popen([KESTREL, "sweep", str(file), "--out", str(out)], stdout=subprocess.DEVNULL)
         deadline = time.monotonic() + 60
-        while time.monotonic() < deadline and run.poll() is None and len(list(out.glob("parts/*/*/turn-*.json"))) < 3:
+        while time.monotonic() < deadline and run.poll() is None and len(list(out.glob("parts/*/*/repetition-*.json"))) < 3:
             time.sleep(0.01)
         run.send_signal(signal.SIGKILL)
         run.wait()

@@ -3,6 +3,7 @@
 #include "draw/view_data.h"
 #include "gl_fixture.h"
 #include "graph/pass.h"
+#include "support/folders.h"
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace kestrel {
@@ -97,7 +98,7 @@ TEST_F(DrawViewTest, ADepthLeadsBackToThePositionThatWasDrawn) {
 }
 
 TEST_F(DrawViewTest, TheShippedFullscreenTriangleCoversEveryPixel) {
-    ShaderLibrary library({std::string(KESTREL_SOURCE_DIR) + "/shaders"});
+    ShaderLibrary library({test::sourceFolder() / "shaders"});
     library.addVirtual("t.frag", "out vec4 out_colour;\nvoid main() { out_colour = vec4(1.0); }\n");
     const gl::Program program(compose({{"lib/fullscreen.vert", "t.frag"}, {}, {}}, library), {"colour"},
                               test::context().capabilities());

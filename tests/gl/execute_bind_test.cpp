@@ -352,14 +352,14 @@ TEST_F(BindTest, APortThatIsNoUseOfTheStepIsNamed) {
 TEST_F(BindTest, ALoopNestThatIsTooLongIsNamedInADebugBuild) {
     addCompute(
         "Long", {"out result"},
-        R"(#include "lib/trips.glsl"
+        R"(#include "lib/iterations.glsl"
                   layout(r32f) uniform writeonly image2D result;
-                  uniform int trips_wanted;
+                  uniform int iterations_wanted;
                   void main() {
                       float sum = 0.0;
-                      TRIPS_BEGIN;
-                      for (int i = 0; i < trips_wanted; ++i) { TRIP; sum += 1.0; }
-                      TRIPS_END;
+                      ITERATIONS_BEGIN;
+                      for (int i = 0; i < iterations_wanted; ++i) { ITERATION; sum += 1.0; }
+                      ITERATIONS_END;
                       imageStore(result, ivec2(gl_GlobalInvocationID.xy), vec4(sum));
                   })",
         {write("result")},
@@ -367,12 +367,12 @@ TEST_F(BindTest, ALoopNestThatIsTooLongIsNamedInADebugBuild) {
             declaration.outputs = {imageOf(world, "result")};
         },
         [](FunctionPass& pass, const Step&, Commands& commands) {
-            commands.set("trips_wanted", static_cast<int>(pass.value));
+            commands.set("iterations_wanted", static_cast<int>(pass.value));
             commands.dispatch(1);
         });
     EXPECT_EQ(messageOfFrame(graphOf({"long: Long = 64000"}, {}, {"long.result"})), "no error");
     EXPECT_THAT(messageOfFrame(graphOf({"long: Long = 70000"}, {}, {"long.result"})),
-                AllOf(HasSubstr("pass 'long', step 'work'"), HasSubstr("65000 trips")));
+                AllOf(HasSubstr("pass 'long', step 'work'"), HasSubstr("65000 iterations")));
 }
 #endif
 

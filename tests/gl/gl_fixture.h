@@ -4,6 +4,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "shader/compose.h"
+#include "support/folders.h"
 #include "support/message.h"
 #include <cstring>
 #include <glad/gl.h>
@@ -39,7 +40,7 @@ private:
 // Composes virtual files ("a.vert", "a.frag"; texts without #version), with the shipped shaders to include.
 inline ComposedProgram composeTexts(const std::vector<std::pair<std::string, std::string>>& files,
                                     const Defines& defines = {}) {
-    ShaderLibrary library({std::string(KESTREL_SOURCE_DIR) + "/shaders"});
+    ShaderLibrary library({test::sourceFolder() / "shaders"});
     ProgramRequest request;
     request.defines = defines;
     for (const auto& [file, text] : files) {

@@ -47,7 +47,7 @@ TEST_F(ObjectsTest, TexelsOfEveryFormatComeBack) {
     const Extent extent{5, 3, 1}; // rows of no multiple of 4 bytes
     for (const Format format : allFormats()) {
         SCOPED_TRACE(formatInfo(format).name);
-        gl::Texture texture(Desc::texture2D(format, extent), "round trip");
+        gl::Texture texture(Desc::texture2D(format, extent), "round iteration");
         EXPECT_THAT(texture.download(), Each(std::byte{0}));
         const std::vector<std::byte> pattern = patternOf(format, 15);
         texture.upload(std::span(pattern));

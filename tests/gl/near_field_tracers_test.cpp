@@ -26,7 +26,7 @@ public:
                               .defines = {},
                               .uses = {{.port = "rays", .access = Access::Storage},
                                        {.port = "normals", .access = Access::Storage, .write = true}},
-                              .modules = {{"tracer", takes::ClosestHit | takes::Surface}}}};
+                              .modules = {{"tracer", requests::ClosestHit | requests::Surface}}}};
         declaration.steps.front().defines.merge(materialDefines(world.facts));
         return declaration;
     }
@@ -37,7 +37,7 @@ public:
     static constexpr const char* shader = R"(
 #include "shared/ray.h"
 #include "lib/tracer.glsl"
-#include "lib/trips.glsl"
+#include "lib/iterations.glsl"
 #include <port:tracer>
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer Rays { RayRecord rays[]; };
@@ -49,11 +49,11 @@ void main() {
     Ray ray = Ray(r.origin, r.normal, r.direction, r.tMin, (r.flags & 1u) != 0u ? r.tMax : -1.0, 1.0, 0u);
     tracer_aim(ray);
     Hit hit;
-    TRIPS_BEGIN;
+    ITERATIONS_BEGIN;
     bool found = tracer_closestHit(ray, hit);
     if (found) normals[id] = vec4(tracer_surface(ray, hit).normal, hit.t);
     else normals[id] = vec4(0.0);
-    TRIPS_END;
+    ITERATIONS_END;
 }
 )";
 };
@@ -67,7 +67,8 @@ public:
     }
     [[nodiscard]] Declaration declare(const World&, const Inputs&, const Demand&) const override {
         Declaration declaration;
-        declaration.outputs = {{.port = "tracer", .desc = Desc::module(gives::Snaps | gives::AlwaysSnaps)}};
+        declaration.outputs = {
+            {.port = "tracer", .desc = Desc::module(provides::Snaps | provides::AlwaysSnaps)}};
         declaration.modules = {
             {.port = "tracer", .shader = "nothing.glsl", .defines = {}, .uses = {}, .modules = {}}};
         return declaration;
@@ -377,8 +378,8 @@ TEST_F(NearField, RaysFromTheEyeAndFromBehindAreSound) {
     for (const glm::vec3& p : square()) corners.emplace_back(p.x, 1, p.y);
     const Scene scene = trianglesScene(corners);
     RaySource::rays = {rayRecord({0, -3, 0.5f}, {0, 1, 0}), rayRecord({0, -4, 0.5f}, {0, -1, 0}),
-                      rayRecord({0, -3, 0.5f}, {1, 0, 0}), rayRecord({0, -5, 0.5f}, {0, 1, 0}),
-                      rayRecord({0, 2, 0.5f}, {0, 1, 0})};
+                       rayRecord({0, -3, 0.5f}, {1, 0, 0}), rayRecord({0, -5, 0.5f}, {0, 1, 0}),
+                       rayRecord({0, 2, 0.5f}, {0, 1, 0})};
     for (shared::RayRecord& ray : RaySource::rays) ray.origin -= glm::vec3(scene.origin);
     Renderer made = traced(scene, {"query.rays=own.rays", "query.tracer=screen.tracer"}, {{"query", "hits"}});
     made.setFreeCamera(lookingFrom(scene, {0, -3, 0.5f}, {0, 1, 0.5f}));

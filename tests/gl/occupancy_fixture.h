@@ -4,14 +4,15 @@
 #include "execute/commands.h"
 #include "execute/renderer.h"
 #include "gl/gl_fixture.h"
+#include "gl/ray_source.h"
 #include "passes/occupancy/grid.h"
 #include "passes/occupancy/occupancy_map.h"
 #include "passes/occupancy/occupancy_trace.h"
 #include "passes/occupancy/roma.h"
 #include "passes/occupancy/roma_cascade.h"
 #include "passes/ray_effects/ray_query.h"
-#include "gl/ray_source.h"
 #include "shared/ray.h"
+#include "support/folders.h"
 #include <bit>
 #include <limits>
 #include <random>
@@ -114,7 +115,7 @@ inline const Registry& registry() {
         made.add(MapSource::type());
         made.add(RayQuery::type());
         made.add(RaySource::type());
-        made.shaderFolders = {std::string(KESTREL_SOURCE_DIR) + "/shaders"};
+        made.shaderFolders = {test::sourceFolder() / "shaders"};
         return made;
     }();
     return instance;

@@ -114,7 +114,8 @@ TEST_P(Whole, ScaleAndPlaceDoNotMatter) {
         const Image usual = render(shippedGraph("ray_ao", settings), transformed(source, glm::dmat4(1)),
                                    {"mean", "result"}, 4);
         const Image other = render(shippedGraph("ray_ao", settings), changed, {"mean", "result"}, 4);
-        const Image seed = render(shippedGraph("ray_ao", settings), changed, {"mean", "result"}, 4, otherSeed);
+        const Image seed =
+            render(shippedGraph("ray_ao", settings), changed, {"mean", "result"}, 4, otherSeed);
         // No further apart than the pictures of two seeds, and by far less on the whole.
         EXPECT_LE(difference(usual, other).rms, 0.5 * difference(usual, seed).rms);
     }

@@ -3,6 +3,7 @@
 // right.
 #include "image/io.h"
 #include "shipped_fixture.h"
+#include "support/folders.h"
 #include <cstdlib>
 
 namespace kestrel::test {
@@ -23,7 +24,7 @@ Graph shortened(const std::string& name) {
 
 // 8-bit values: what does not fit into them (positions, light above 1) is clamped on both sides alike.
 Image asStored(const Image& image) {
-    return decodeImage(encodeImage(image, ImageFormat::Png, Encoding::Linear), ImageFormat::Png, "rendered");
+    return decodeImage(encodeImage(image, ImageFormat::Png, Encoding::Linear), "rendered");
 }
 
 TEST_P(Golden, ThePictureIsTheOneThatWasKept) {
@@ -34,8 +35,8 @@ TEST_P(Golden, ThePictureIsTheOneThatWasKept) {
     for (int i = 0; i < 2; ++i) made.frame();
     for (const GraphOutput& output : graph.outputs) {
         if (made.desc(output.port).kind != ResourceKind::Texture2D) continue;
-        const std::filesystem::path file = std::filesystem::path(KESTREL_SOURCE_DIR) / "tests/golden" /
-                                           (GetParam() + "." + output.port.text() + ".png");
+        const std::filesystem::path file =
+            test::sourceFolder() / "tests/golden" / (GetParam() + "." + output.port.text() + ".png");
         const Image now = asStored(made.read(output.port));
         if (std::getenv("KESTREL_UPDATE_GOLDEN") != nullptr) {
             writeImage(file, now, Encoding::Linear);

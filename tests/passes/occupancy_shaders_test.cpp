@@ -1,5 +1,6 @@
 // Every variant of the occupancy shaders that the passes can choose compiles.
 #include "shader/validate.h"
+#include "support/folders.h"
 #include <algorithm>
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ void expectValid(const ProgramRequest& request, ShaderLibrary& library) {
     EXPECT_EQ(text, "");
 }
 
-ShaderLibrary shippedShaders() { return ShaderLibrary({std::string(KESTREL_SOURCE_DIR) + "/shaders"}); }
+ShaderLibrary shippedShaders() { return ShaderLibrary({test::sourceFolder() / "shaders"}); }
 
 // A consumer of a tracer that asks all there is.
 void addConsumer(ShaderLibrary& library) {
@@ -57,13 +58,13 @@ TEST(OccupancyShaders, RotateCompiles) {
 TEST(OccupancyShaders, TheTracerCompilesForEveryConsumer) {
     ShaderLibrary library = shippedShaders();
     addConsumer(library);
-    const Choices choices = {{"TAKES_SNAP", {undefinedChoice, "1"}},
+    const Choices choices = {{"REQUESTS_SNAP", {undefinedChoice, "1"}},
                              {"MAPS_STORAGE", {undefinedChoice, "1"}},
                              {"COUNT_EXHAUSTED", {undefinedChoice, "1"}},
                              {"EMPTY", {undefinedChoice, "1"}}};
     for (const auto& [n, bits] : sizes)
         for (const Defines& chosen : allCombinations(choices))
-            for (const char* trips : {"", "KESTREL_DEBUG_TRIPS"}) {
+            for (const char* iterations : {"", "KESTREL_DEBUG_ITERATIONS"}) {
                 Defines defines = sized(chosen, n);
                 defines["DIRECTIONS"] = "16";
                 defines["ANGULAR"] = "4";
@@ -71,7 +72,7 @@ TEST(OccupancyShaders, TheTracerCompilesForEveryConsumer) {
                 for (const char* file : {"occupancy/roma.glsl", "occupancy/roma_cascade.glsl"}) {
                     if (std::string_view(file) == "occupancy/roma_cascade.glsl") defines["LEVELS"] = "3";
                     ProgramRequest request{{"consumer.comp"}, {}, {{"tracer", {file, defines, {}}}}};
-                    if (*trips) request.defines[trips] = "1";
+                    if (*iterations) request.defines[iterations] = "1";
                     expectValid(request, library);
                 }
             }
@@ -86,13 +87,13 @@ TEST(OccupancyShaders, WalkingThroughTheMapCompilesForEveryConsumer) {
                              {"EMPTY", {undefinedChoice, "1"}}};
     for (const auto& [n, bits] : sizes) {
         for (const Defines& chosen : allCombinations(choices))
-            for (const char* trips : {"", "KESTREL_DEBUG_TRIPS"}) {
+            for (const char* iterations : {"", "KESTREL_DEBUG_ITERATIONS"}) {
                 Defines defines = sized(chosen, n);
                 defines["ITERATIONS"] = "1024";
                 defines["TOP_LEVEL"] = "3";
                 ProgramRequest request{
                     {"consumer.comp"}, {}, {{"tracer", {"occupancy/occupancy_trace.glsl", defines, {}}}}};
-                if (*trips) request.defines[trips] = "1";
+                if (*iterations) request.defines[iterations] = "1";
                 expectValid(request, library);
             }
         for (const Defines& chosen : allCombinations({{"COARSER", {undefinedChoice, "1"}}}))
@@ -124,7 +125,7 @@ TEST(OccupancyShaders, TheMapCompilesByEveryMethod) {
             if (n > 128) columns["COLUMNS_HIGH"] = "columns_x_high";
             expectValid({{"occupancy/raster.vert", "occupancy/raster.frag"}, columns, {}}, library);
             large["LARGE"] = "1";
-            large["KESTREL_DEBUG_TRIPS"] = exact["KESTREL_DEBUG_TRIPS"] = "1";
+            large["KESTREL_DEBUG_ITERATIONS"] = exact["KESTREL_DEBUG_ITERATIONS"] = "1";
             expectValid({{"occupancy/exact.comp"}, exact, {}}, library);
             expectValid({{"occupancy/exact.comp"}, large, {}}, library);
             exact["LEVELS"] = large["LEVELS"] = "3";

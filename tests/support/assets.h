@@ -1,5 +1,6 @@
 // Real scenes that tests use where they are: $KESTREL_ASSETS, or shared/assets beside the source tree.
 #pragma once
+#include "support/folders.h"
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -11,8 +12,7 @@ namespace kestrel::test {
 // The folder of the real scenes; empty if there is none.
 inline std::filesystem::path assetsFolder() {
     const char* named = std::getenv("KESTREL_ASSETS");
-    const std::filesystem::path folder =
-        named ? named : std::filesystem::path(KESTREL_SOURCE_DIR) / ".." / "shared" / "assets";
+    const std::filesystem::path folder = named ? named : test::sourceFolder() / ".." / "shared" / "assets";
     std::error_code failure;
     return std::filesystem::is_directory(folder, failure) ? std::filesystem::canonical(folder)
                                                           : std::filesystem::path();

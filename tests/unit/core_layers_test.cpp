@@ -1,5 +1,6 @@
 // The order of the layers, read from the includes: a folder includes only itself and folders before it.
 #include "core/files.h"
+#include "support/folders.h"
 #include <algorithm>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -54,7 +55,7 @@ std::string layerOf(const std::string& target) {
 // Whether a quoted include is a file beside the includer.
 bool isBeside(const Include& include) { return fs::exists(include.file.parent_path() / include.target); }
 
-const fs::path root = KESTREL_SOURCE_DIR;
+const fs::path root = test::sourceFolder();
 
 TEST(Layers, AFolderIncludesOnlyFoldersBeforeIt) {
     size_t seen = 0;

@@ -4,6 +4,7 @@
 #include "shader/reflect.h"
 #include "shader/validate.h"
 #include "shared/scene.h"
+#include "support/folders.h"
 #include <cstddef>
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ using shared::TextureRecord;
 using shared::VertexRecord;
 
 ComposedProgram composeText(const std::string& text, const Defines& defines = {}) {
-    ShaderLibrary library({std::string(KESTREL_SOURCE_DIR) + "/shaders"});
+    ShaderLibrary library({test::sourceFolder() / "shaders"});
     library.addVirtual("test.comp", text);
     return compose({{"test.comp"}, defines, {}}, library);
 }

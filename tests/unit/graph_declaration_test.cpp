@@ -150,7 +150,7 @@ TEST(Declaration, StepsAndModulesAreChecked) {
     EXPECT_EQ(mistake(spoilt([](Declaration& d) { d.steps[0].name.clear(); })),
               "g.json:2:1: pass 'p' (P): a step has no name");
     const auto includes = [](const std::string& port) {
-        return mistake(spoilt([port](Declaration& d) { d.steps[0].modules = {{port, takes::AnyHit}}; }));
+        return mistake(spoilt([port](Declaration& d) { d.steps[0].modules = {{port, requests::AnyHit}}; }));
     };
     EXPECT_EQ(includes("tracer"), "no error");
     EXPECT_EQ(includes("trace"),

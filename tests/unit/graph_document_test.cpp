@@ -311,7 +311,7 @@ TEST(Registry, RefusesNamesTakenTwiceAndBadDefaults) {
     PropertyInfo property;
     property.name = "amount";
     property.maximum = 1;
-    property.standard = 2.0;
+    property.defaultValue = 2.0;
     bad.properties.push_back(property);
     EXPECT_EQ(
         messageOf([&] { registry.add(bad); }),

@@ -38,7 +38,7 @@ inline PortInfo internal(std::string name, PortKind kind = PortKind::Texture) {
 inline PassType mockType(std::string name, std::vector<PortInfo> ports, Declare declare) {
     PassType type;
     type.name = std::move(name);
-    type.sentence = "A pass for tests";
+    type.description = "A pass for tests";
     type.ports = std::move(ports);
     type.make = [declare = std::move(declare)] { return std::make_unique<MockPass>(declare); };
     return type;

@@ -1,4 +1,4 @@
-// Modules: names, defines, inherited uses, gives and takes.
+// Modules: names, defines, inherited uses, what is provided and requested.
 #include "graph/network.h"
 #include "graph_mock.h"
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ TEST(GlslName, FollowsTheRule) {
     EXPECT_EQ(glslName("", writes("depth", Access::Attachment), ResourceKind::Texture2D, false), "out_depth");
 }
 
-Output moduleOutput(const std::string& port, Bits gives) { return output(port, Desc::module(gives)); }
+Output moduleOutput(const std::string& port, Bits provides) { return output(port, Desc::module(provides)); }
 
 Module module(std::string port, std::string shader, std::vector<Use> uses,
               std::vector<ModuleUse> modules = {}) {
@@ -57,10 +57,11 @@ Registry tracerRegistry() {
         [](const World&, const Inputs&, const Demand& demand) {
             Declaration d;
             d.outputs = {output("maps", Desc::buffer(4096, Format::R32UI)),
-                         moduleOutput("tracer", gives::Snaps)};
+                         moduleOutput("tracer", provides::Snaps)};
             d.modules = {module("tracer", "roma/roma.glsl",
                                 {reads("maps", Access::Image), reads("map", Access::Storage)})};
-            if ((demand.takes("tracer") & takes::ClosestHit) != 0) d.modules[0].defines["CLOSEST"] = "1";
+            if ((demand.requests("tracer") & requests::ClosestHit) != 0)
+                d.modules[0].defines["CLOSEST"] = "1";
             d.steps = {step("rotate", {reads("map"), writes("maps", Access::Storage)})};
             return d;
         }));
@@ -69,7 +70,7 @@ Registry tracerRegistry() {
                           [](const World&, const Inputs&, const Demand&) {
                               Declaration d;
                               d.depends = Causes::Frame;
-                              d.outputs = {moduleOutput("tracer", gives::Surface)};
+                              d.outputs = {moduleOutput("tracer", provides::Surface)};
                               d.modules = {module("tracer", "screen/screen.glsl", {reads("depth")})};
                               return d;
                           }));
@@ -79,21 +80,21 @@ Registry tracerRegistry() {
          out("tracer", PortKind::Tracer)},
         [](const World&, const Inputs& in, const Demand& demand) {
             Declaration d;
-            const Bits nearGives = in["near"].desc.gives, farGives = in["far"].desc.gives;
-            if ((nearGives & gives::Snaps) != 0)
+            const Bits nearGives = in["near"].desc.provides, farGives = in["far"].desc.provides;
+            if ((nearGives & provides::Snaps) != 0)
                 d.problems = {{"near", "snaps: both halves need one direction"}};
-            d.outputs = {moduleOutput("tracer", (nearGives & farGives) | (farGives & gives::Snaps)),
+            d.outputs = {moduleOutput("tracer", (nearGives & farGives) | (farGives & provides::Snaps)),
                          output("block", Desc::buffer(16))};
-            const Bits taken = demand.takes("tracer");
+            const Bits taken = demand.requests("tracer");
             d.modules = {module("tracer", "near_far/near_far.glsl", {reads("block", Access::Uniform)},
-                                {{"near", taken & ~takes::BearsSnap}, {"far", taken}})};
+                                {{"near", taken & ~requests::Snap}, {"far", taken}})};
             d.steps = {step("block", {writes("block", Access::Copy)}, {}, {})};
             return d;
         }));
     registry.add(mockType("Snapper", {out("tracer", PortKind::Tracer)},
                           [](const World&, const Inputs&, const Demand&) {
                               Declaration d;
-                              d.outputs = {moduleOutput("tracer", gives::Snaps | gives::AlwaysSnaps)};
+                              d.outputs = {moduleOutput("tracer", provides::Snaps | provides::AlwaysSnaps)};
                               d.modules = {module("tracer", "snapper/snapper.glsl", {})};
                               return d;
                           }));
@@ -107,10 +108,10 @@ Registry tracerRegistry() {
         };
     };
     registry.add(mockType("Ao", {in("tracer", PortKind::Tracer), out("r")},
-                          consumer(takes::AnyHit | takes::BearsSnap)));
-    registry.add(mockType("Shadow", {in("tracer", PortKind::Tracer), out("r")}, consumer(takes::AnyHit)));
+                          consumer(requests::AnyHit | requests::Snap)));
+    registry.add(mockType("Shadow", {in("tracer", PortKind::Tracer), out("r")}, consumer(requests::AnyHit)));
     registry.add(mockType("Gi", {in("tracer", PortKind::Tracer), out("r")},
-                          consumer(takes::ClosestHit | takes::Surface | takes::BearsSnap)));
+                          consumer(requests::ClosestHit | requests::Surface | requests::Snap)));
     return registry;
 }
 
@@ -142,16 +143,16 @@ TEST(Modules, TwoTracersNestedInAConsumer) {
     const ProgramRequest& program = plan.programs[static_cast<size_t>(trace.program)];
     const ModuleInstance& both = program.modules.at("tracer");
     EXPECT_EQ(both.file, "near_far/near_far.glsl");
-    EXPECT_EQ(both.defines, (Defines{{"TAKES_ANY", "1"}, {"TAKES_SNAP", "1"}}));
-    EXPECT_EQ(both.modules.at("near").defines, (Defines{{"TAKES_ANY", "1"}}));
+    EXPECT_EQ(both.defines, (Defines{{"REQUESTS_ANY", "1"}, {"REQUESTS_SNAP", "1"}}));
+    EXPECT_EQ(both.modules.at("near").defines, (Defines{{"REQUESTS_ANY", "1"}}));
     EXPECT_EQ(both.modules.at("far").file, "roma/roma.glsl");
-    EXPECT_EQ(both.modules.at("far").defines, (Defines{{"TAKES_ANY", "1"}, {"TAKES_SNAP", "1"}}));
+    EXPECT_EQ(both.modules.at("far").defines, (Defines{{"REQUESTS_ANY", "1"}, {"REQUESTS_SNAP", "1"}}));
     // The same module in a consumer that does not bear snapping: another variant, also inside.
     const PlanPass& shadow = *passAt(plan, "shadow");
     const auto& exact =
         plan.programs[static_cast<size_t>(plan.steps[static_cast<size_t>(shadow.firstStep)].program)];
-    EXPECT_EQ(exact.modules.at("tracer").defines, (Defines{{"TAKES_ANY", "1"}}));
-    EXPECT_EQ(exact.modules.at("tracer").modules.at("far").defines, (Defines{{"TAKES_ANY", "1"}}));
+    EXPECT_EQ(exact.modules.at("tracer").defines, (Defines{{"REQUESTS_ANY", "1"}}));
+    EXPECT_EQ(exact.modules.at("tracer").modules.at("far").defines, (Defines{{"REQUESTS_ANY", "1"}}));
 
     // Causes: through the module to everything behind it. The block of `both` needs none of them.
     EXPECT_THAT(ao.inputs, ElementsAre(0, 1, 2, 3, 4));
@@ -161,7 +162,7 @@ TEST(Modules, TwoTracersNestedInAConsumer) {
     EXPECT_THAT(nearFar.inputs, ElementsAre());
     EXPECT_FALSE(nearFar.everyFrame);
     EXPECT_EQ(passAt(plan, "screen")->stepCount, 0);
-    EXPECT_EQ(passAt(plan, "screen")->descs.at("tracer").gives, gives::Surface);
+    EXPECT_EQ(passAt(plan, "screen")->descs.at("tracer").provides, provides::Surface);
 
     // The depth lives until its last reader, which reads it through two modules.
     EXPECT_EQ(resourceAt(plan, "gbuffer.depth")->lastStep, shadow.firstStep);

@@ -45,7 +45,7 @@ Declaration declareRandom(const Behaviour& how, const Inputs& in, const Demand& 
     Step last = step("last", {});
     for (const std::string& port : textureInputs)
         if (in.connected(port)) last.uses.push_back(reads(port, how.readAccess));
-    if (in.connected("m")) last.modules.push_back({"m", takes::AnyHit});
+    if (in.connected("m")) last.modules.push_back({"m", requests::AnyHit});
     if (needsScratch) {
         Output scratch = output("scratch", how.scratch);
         if (how.clears) scratch.clear = clearValue;
@@ -90,7 +90,7 @@ Declaration declareRandom(const Behaviour& how, const Inputs& in, const Demand& 
         module.shader = "t.glsl";
         module.uses = {reads("scratch", how.readAccess)};
         if (in.connected("in1")) module.uses.push_back(reads("in1"));
-        if (in.connected("m")) module.modules = {{"m", takes::AnyHit}};
+        if (in.connected("m")) module.modules = {{"m", requests::AnyHit}};
         d.modules = {module};
     }
     const bool work =

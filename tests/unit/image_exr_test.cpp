@@ -24,24 +24,17 @@ using test_files::ExrBuilder;
 using test_files::exrFile;
 using test_files::ExrPicture;
 using test_files::ExrPlane;
+using test_files::infinity;
+using test_files::nan;
+using test_files::warningsOf;
 using test_files::window;
 using testing::HasSubstr;
 using Values = std::vector<float>;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 std::vector<std::uint32_t> bitsOf(const Image& image) {
     std::vector<std::uint32_t> bits;
     for (const float value : image.values) bits.push_back(std::bit_cast<std::uint32_t>(value));
     return bits;
-}
-
-// What is said while `bytes` are read.
-std::string warningsOf(const Bytes& bytes, const std::string& layer = {}) {
-    testing::internal::CaptureStderr();
-    decodeImage(bytes, "file", layer);
-    return testing::internal::GetCapturedStderr();
 }
 
 // The picture that `colourPlanes` describes.

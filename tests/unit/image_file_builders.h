@@ -6,6 +6,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <gtest/gtest.h>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,6 +18,16 @@ namespace kestrel::test_files {
 
 using Bytes = std::vector<std::byte>;
 using Octets = std::vector<std::uint8_t>;
+
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+inline constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+// What reading says on standard error.
+inline std::string warningsOf(const Bytes& bytes, const std::string& layer = {}) {
+    testing::internal::CaptureStderr();
+    decodeImage(bytes, "file", layer);
+    return testing::internal::GetCapturedStderr();
+}
 
 inline Bytes bytesOf(std::string_view text) {
     Bytes bytes;

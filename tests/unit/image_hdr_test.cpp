@@ -14,11 +14,11 @@ namespace {
 using test::pattern;
 using test_files::Bytes;
 using test_files::decodeMessage;
+using test_files::infinity;
+using test_files::nan;
+using test_files::warningsOf;
 using testing::HasSubstr;
 using Values = std::vector<float>;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 Image roundTrip(const Image& image) {
     return decodeImage(encodeImage(image, ImageFormat::Hdr, Encoding::Linear), "file");
@@ -30,12 +30,6 @@ Bytes hdr(const std::string& header, const std::string& size, const std::string&
 
 const std::string format = "FORMAT=32-bit_rle_rgbe\n";
 const std::string pixel("\x80\x40\x00\x81", 4); // 128, 64, 0 times 2^(129-136) = 1, 0.5, 0
-
-std::string warningsOf(const Bytes& bytes) {
-    testing::internal::CaptureStderr();
-    decodeImage(bytes, "file");
-    return testing::internal::GetCapturedStderr();
-}
 
 // Pixels without run lengths: mantissas `from`, `from` + 1 and so on, in red alone, at the exponent where a
 // mantissa is its own value.

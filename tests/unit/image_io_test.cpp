@@ -18,12 +18,11 @@ using test::messageOf;
 using test::pattern;
 using test_files::Bytes;
 using test_files::decodeMessage;
+using test_files::infinity;
+using test_files::nan;
 using testing::HasSubstr;
 using testing::StartsWith;
 namespace fs = std::filesystem;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 class ImageFiles : public testing::Test {
 protected:

@@ -1,6 +1,6 @@
 #include "core/files.h"
-#include "measure/sweep_results.h"
 #include "measure/sweep_hits.h"
+#include "measure/sweep_results.h"
 #include "shared/ray.h"
 #include <cmath>
 #include <fmt/format.h>
@@ -40,7 +40,8 @@ protected:
         units = sweepUnits(sweep, points);
     }
 
-    [[nodiscard]] static SweepTurn turn(int round, double scale, const std::string& machine = "aaaaaa") {
+    [[nodiscard]] static SweepRepetition repetition(int round, double scale,
+                                                    const std::string& machine = "aaaaaa") {
         SweepFrame frame;
         frame.ms = 10 * scale;
         frame.steps = {{"bom", "mark", "generation", 2 * scale},
@@ -66,12 +67,12 @@ protected:
         for (size_t i = 0; i < units.size(); ++i) {
             if (!shard.has(i)) continue;
             folder.write(sweep.scenes[static_cast<size_t>(units[i].scene)],
-                         SweepTruth{0.01, 1, "r.png", {}, 0, 0, ""});
+                         SweepReferenceRecord{0.01, 1, "r.png", {}, 0, 0, ""});
             for (const int p : units[i].points) {
                 const SweepPoint& point = points[static_cast<size_t>(p)];
                 folder.write(units[i], point, picture(0.1 / (p + 1)));
                 for (int round = 0; round < 2; ++round)
-                    folder.write(units[i], point, turn(round, scale * (p + 1 + round)));
+                    folder.write(units[i], point, repetition(round, scale * (p + 1 + round)));
             }
         }
     }
@@ -119,8 +120,8 @@ TEST(ParetoFront, AgreesWithItsDefinition) {
 }
 
 TEST_F(SweepResultsTest, PartsReadBackAsTheyWereWritten) {
-    const SweepTurn before = turn(1, 2.5);
-    const SweepTurn after = turnOf(partText(before), "x");
+    const SweepRepetition before = repetition(1, 2.5);
+    const SweepRepetition after = repetitionOf(partText(before), "x");
     EXPECT_EQ(after.round, 1);
     EXPECT_EQ(after.frames[0].steps[2].group, "tracing");
     EXPECT_EQ(after.frames[0].steps[2].ms, 10);
@@ -132,14 +133,16 @@ TEST_F(SweepResultsTest, PartsReadBackAsTheyWereWritten) {
     EXPECT_EQ(read.leftOut[0].why, "nobody reads it");
     EXPECT_EQ(read.reports, seen.reports);
     EXPECT_EQ(machineOf(partText(machine), "x"), machine);
-    EXPECT_EQ(truthOf(partText(SweepTruth{0.5, 2, "p", {{"a", 1}}, 0.25, 8, "h"}), "x").noise, 0.5);
-    EXPECT_THROW(static_cast<void>(turnOf("{", "x")), InputError);
+    EXPECT_EQ(
+        referenceRecordOf(partText(SweepReferenceRecord{0.5, 2, "p", {{"a", 1}}, 0.25, 8, "h"}), "x").noise,
+        0.5);
+    EXPECT_THROW(static_cast<void>(repetitionOf("{", "x")), InputError);
     EXPECT_THROW(static_cast<void>(pictureOf("{}", "x")), InputError);
 }
 
 TEST_F(SweepResultsTest, TimesAreOfStepsGroupsAndWhatTheSweepNames) {
     SweepRow row;
-    addTimes(row, sweep, {turn(0, 1), turn(1, 3)});
+    addTimes(row, sweep, {repetition(0, 1), repetition(1, 3)});
     EXPECT_EQ(row.repeats, 2);
     EXPECT_EQ(row.ms.at("total").median, 18);
     EXPECT_EQ(row.ms.at("frame").median, 20);
@@ -152,17 +155,17 @@ TEST_F(SweepResultsTest, TimesAreOfStepsGroupsAndWhatTheSweepNames) {
 }
 
 TEST_F(SweepResultsTest, AStepThatDidNotRunTookNoTime) {
-    SweepTurn idle = turn(1, 1);
+    SweepRepetition idle = repetition(1, 1);
     idle.frames[0].steps.pop_back();
     SweepRow row;
-    addTimes(row, sweep, {turn(0, 1), idle});
+    addTimes(row, sweep, {repetition(0, 1), idle});
     EXPECT_EQ(row.ms.at("tracing"), (Quartiles{1, 2, 3}));
     EXPECT_EQ(row.steps[2].second.median, 2);
 }
 
 TEST_F(SweepResultsTest, TurnsOfTwoMachinesNeverMix) {
     SweepRow row;
-    addTimes(row, sweep, {turn(0, 1), turn(1, 100, "bbbbbb"), turn(2, 1)});
+    addTimes(row, sweep, {repetition(0, 1), repetition(1, 100, "bbbbbb"), repetition(2, 1)});
     EXPECT_EQ(row.machine, "aaaaaa");
     EXPECT_EQ(row.repeats, 2);
     EXPECT_EQ(row.ms.at("total").q3, 9);
@@ -171,7 +174,7 @@ TEST_F(SweepResultsTest, TurnsOfTwoMachinesNeverMix) {
 TEST_F(SweepResultsTest, TheFrontIsOfOneMachineAndPlot) {
     std::vector<SweepRow> rows(3);
     for (size_t i = 0; i < 3; ++i) {
-        addTimes(rows[i], sweep, {turn(0, double(i + 1), i == 2 ? "bbbbbb" : "aaaaaa")});
+        addTimes(rows[i], sweep, {repetition(0, double(i + 1), i == 2 ? "bbbbbb" : "aaaaaa")});
         rows[i].picture = picture(0.1);
     }
     markPareto(rows, sweep);
@@ -283,7 +286,7 @@ TEST_F(SweepResultsTest, ShardsJoinToTheWhole) {
 TEST_F(SweepResultsTest, WhatIsNotMeasuredIsMissing) {
     const SweepFolder folder(root / "out", sweep);
     folder.begin(false, &machine);
-    folder.write(units[0], points[0], picture(0.1)); // no turn yet
+    folder.write(units[0], points[0], picture(0.1)); // no repetition yet
     SweepPicture failed;
     failed.failed = "it does not compile";
     folder.write(units[0], points[1], failed);

@@ -2,6 +2,7 @@
 #include "core/files.h"
 #include "graph/guard.h"
 #include "plugin/loader.h"
+#include "support/folders.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdexcept>
@@ -15,7 +16,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 fs::path plugin(const std::string& name) {
-    return fs::path(KESTREL_BINARY_DIR) / "test_plugins" / name / (name + ".so");
+    return test::buildFolder() / "test_plugins" / name / (name + ".so");
 }
 
 TEST(PluginLoader, AGoodPluginBringsItsTypesWithItsName) {
@@ -26,7 +27,7 @@ TEST(PluginLoader, AGoodPluginBringsItsTypesWithItsName) {
     const PassType* type = registry.find("Good");
     ASSERT_NE(type, nullptr);
     EXPECT_EQ(type->plugin, "good.so");
-    EXPECT_EQ(std::get<std::int64_t>(type->property("amount")->standard), 3);
+    EXPECT_EQ(std::get<std::int64_t>(type->property("amount")->defaultValue), 3);
     EXPECT_NE(type->make(), nullptr);
 }
 

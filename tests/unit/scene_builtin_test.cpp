@@ -230,7 +230,7 @@ TEST(Builtin, NamesAreRecognised) {
     EXPECT_FALSE(isBuiltin("blob"));
     EXPECT_FALSE(isBuiltin("scene.glb"));
     EXPECT_EQ(builtinInfos().size(), builtinNames().size());
-    for (const BuiltinInfo& info : builtinInfos()) EXPECT_GT(info.sentence.size(), 20u);
+    for (const BuiltinInfo& info : builtinInfos()) EXPECT_GT(info.description.size(), 20u);
     EXPECT_EQ(built("blob", "?detail=0.5").source, "builtin:blob?detail=0.5");
     EXPECT_EQ(built("blob", "?detail=0.5").name, "builtin:blob");
 }

@@ -401,7 +401,8 @@ TEST(GltfHostile, EveryTruncationIsAnError) {
             << size << " of " << glb.size();
     const std::string text = richFile().text();
     for (size_t size = 0; size < text.size(); ++size)
-        EXPECT_NE(loadMessage(folder, std::as_bytes(std::span(text)).first(size), "cut.gltf"), "no error") << size;
+        EXPECT_NE(loadMessage(folder, std::as_bytes(std::span(text)).first(size), "cut.gltf"), "no error")
+            << size;
 }
 
 // Either the file loads or there is an InputError of one line; a crash or another exception fails the test.

@@ -1,7 +1,8 @@
 #include "core/files.h"
+#include "shader/iterations.h"
 #include "shader/problems.h"
-#include "shader/trips.h"
 #include "shader/validate.h"
+#include "support/folders.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <thread>
@@ -202,26 +203,26 @@ TEST(Validate, WorksFromSeveralThreads) {
 }
 
 // The loop guard of the shader library.
-class Trips : public testing::TestWithParam<bool> {};
+class Iterations : public testing::TestWithParam<bool> {};
 
-TEST_P(Trips, CompilesWithAndWithoutCounting) {
-    ShaderLibrary library({std::filesystem::path(KESTREL_SOURCE_DIR) / "shaders"});
-    library.addVirtual("x.comp", "#include \"lib/trips.glsl\"\n"
+TEST_P(Iterations, CompilesWithAndWithoutCounting) {
+    ShaderLibrary library({test::sourceFolder() / "shaders"});
+    library.addVirtual("x.comp", "#include \"lib/iterations.glsl\"\n"
                                  "layout(local_size_x = 1) in;\n"
                                  "buffer B { uint bound; uint sum; };\n"
                                  "void main() {\n"
-                                 "    TRIPS_BEGIN;\n"
-                                 "    for (uint i = 0u; i < bound; ++i) { TRIP; ++sum; }\n"
-                                 "    TRIPS_END;\n"
+                                 "    ITERATIONS_BEGIN;\n"
+                                 "    for (uint i = 0u; i < bound; ++i) { ITERATION; ++sum; }\n"
+                                 "    ITERATIONS_END;\n"
                                  "}\n");
     ProgramRequest request{{"x.comp"}, {}, {}};
-    if (GetParam()) request.defines[tripsDefine] = "1";
+    if (GetParam()) request.defines[iterationsDefine] = "1";
     const ComposedProgram program = compose(request, library);
     EXPECT_EQ(textOf(validate(program)), "");
     EXPECT_THAT(program.stages[0].text,
-                HasSubstr("const uint tripsLimit = " + std::to_string(maxTrips) + "u;"));
+                HasSubstr("const uint iterationsLimit = " + std::to_string(maxIterations) + "u;"));
 }
-INSTANTIATE_TEST_SUITE_P(Debug, Trips, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Debug, Iterations, testing::Bool());
 
 ComposedStage stageOfTwoFiles() {
     ComposedStage stage;

@@ -10,7 +10,6 @@
 namespace kestrel::builtin {
 namespace {
 
-
 struct Joint {
     std::string name;
     int parent; // index of a joint, -1: the skeleton's root node
