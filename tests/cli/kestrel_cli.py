@@ -57,9 +57,30 @@ def files_in(path):
     return sorted(str(file.relative_to(path)) for file in Path(path).rglob("*") if file.is_file())
 
 
+class Skipped(Exception):
+    """What a test needs is not here: it says so, and counts as skipped, not as passed."""
+
+
+def need(there, what):
+    if not there:
+        raise Skipped(what)
+
+
+def need_part(name):
+    """A part that a build may lack: "embree", "osmesa"."""
+    need(name in kestrel("--version").out, f"this build has no {name}")
+
+
 def run_tests(names):
+    """Runs the tests that the command line names, or all. Exit status 77 if one was skipped and none failed."""
     wanted = sys.argv[1:]
+    skipped = False
     for name, test in sorted(names.items()):
         if name.startswith("test_") and (not wanted or name in wanted):
-            test()
-            print(f"{name}: passed")
+            try:
+                test()
+                print(f"{name}: passed")
+            except Skipped as why:
+                skipped = True
+                print(f"{name}: skipped, {why}")
+    sys.exit(77 if skipped else 0)
