@@ -33,11 +33,8 @@ public:
         declaration.outputs.push_back(std::move(result));
         declaration.steps.push_back({.name = "invert",
                                      .shaders = {"plugin_template/invert.comp"},
-                                     .defines = {},
                                      .uses = {{.port = "signal", .access = Access::Fetch},
-                                              {.port = "result", .access = Access::Image, .write = true}},
-                                     .modules = {},
-                                     .group = {}});
+                                              {.port = "result", .access = Access::Image, .write = true}}});
         declaration.depends = Causes::Properties;
         return declaration;
     }

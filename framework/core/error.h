@@ -64,8 +64,10 @@ public:
 // The machine lacks something (exit 3): no GL, no such extension, no such package built in.
 class MachineError : public Error {
 public:
+    explicit MachineError(std::vector<Problem> problems)
+        : Error(ExitStatus::MachineLacks, std::move(problems)) {}
     explicit MachineError(std::string message)
-        : Error(ExitStatus::MachineLacks, {Problem{{}, std::move(message)}}) {}
+        : MachineError({Problem{{}, std::move(message)}}) {}
 };
 
 // The candidate nearest to `name` by edit distance, or empty if none is near enough to be a likely typing

@@ -38,6 +38,8 @@ public:
     [[nodiscard]] virtual const Geometry& geometry() const = 0;              // at this frame's time
     [[nodiscard]] virtual const std::vector<LightState>& lights() const = 0; // at this frame's time
     [[nodiscard]] virtual const Capabilities& capabilities() const = 0;
+    // Whether this step declares a use of the port.
+    [[nodiscard]] virtual bool uses(std::string_view port) const = 0;
     [[nodiscard]] virtual const Desc& desc(std::string_view port) const = 0;
     // Why this pass runs in this frame: its own causes and those of all inputs. Everything in the first
     // frame.
@@ -93,8 +95,8 @@ public:
     virtual void clear(std::string_view port, const glm::vec4& value) = 0;
     virtual void generateMips(std::string_view port) = 0;
 
-    // This output must hold `elements` (the meaning is the pass's own: World::grown tells it back at the next
-    // compilation). The frame is compiled anew and run again.
+    // This output must hold `elements` (the meaning is the pass's own: Demand::grown tells it back at the
+    // next compilation). The frame is compiled anew and run again.
     virtual void overflow(std::string_view port, std::uint64_t elements) = 0;
     // What the pass computed that belongs into the report: "hits", "exhausted rays", "reference noise"…
     virtual void report(std::string_view key, double value) = 0;

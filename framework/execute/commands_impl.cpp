@@ -28,6 +28,11 @@ void StepCommands::fail(const std::string& message) const {
 
 // ---- what is known
 
+bool StepCommands::uses(std::string_view port) const {
+    const std::vector<Use>& all = step().step.uses;
+    return std::any_of(all.begin(), all.end(), [&](const Use& use) { return use.port == port; });
+}
+
 const Desc& StepCommands::desc(std::string_view port) const {
     const auto found = pass().descs.find(std::string(port));
     if (found == pass().descs.end()) fail(fmt::format("nothing stands behind port '{}'", port));
@@ -141,7 +146,7 @@ void StepCommands::drawVertices(const DrawState& state, std::uint32_t count, std
 
 int StepCommands::resourceOf(std::string_view port) const {
     for (const PlanBinding& binding : step().bindings)
-        if (binding.port == port && !binding.previous) return binding.resource;
+        if (binding.path.empty() && binding.port == port && !binding.previous) return binding.resource;
     fail(fmt::format("port '{}' is not among the step's uses", port));
 }
 
@@ -194,7 +199,7 @@ void StepCommands::generateMips(std::string_view port) { textureOf(port).generat
 void StepCommands::overflow(std::string_view port, std::uint64_t elements) {
     if (!pass().descs.contains(std::string(port)))
         fail(fmt::format("an overflow of port '{}', which it does not have", port));
-    std::uint64_t& needed = context_.report.overflows[pass().name + "." + std::string(port)];
+    std::uint64_t& needed = context_.report.overflows[pass().name][std::string(port)];
     needed = std::max(needed, elements);
 }
 

@@ -25,7 +25,7 @@ struct FrameScene {
 
 // What the steps of a frame tell the executor.
 struct FrameReport {
-    std::map<std::string, std::uint64_t> overflows;              // "pass.port" -> elements needed
+    std::map<std::string, Growth> overflows;                     // pass -> output -> elements needed
     std::map<std::string, std::map<std::string, double>> values; // pass -> key -> value
     std::string step;                                            // that is running: "pass 'a', step 'b'"
     std::function<void(const std::string& what, double fraction)> progress;
@@ -53,6 +53,7 @@ public:
     [[nodiscard]] const Geometry& geometry() const override { return *context_.frame.geometry; }
     [[nodiscard]] const std::vector<LightState>& lights() const override { return *context_.frame.lights; }
     [[nodiscard]] const Capabilities& capabilities() const override { return context_.capabilities; }
+    [[nodiscard]] bool uses(std::string_view port) const override;
     [[nodiscard]] const Desc& desc(std::string_view port) const override;
     [[nodiscard]] Causes causes() const override;
     [[nodiscard]] Causes causes(std::string_view input) const override;

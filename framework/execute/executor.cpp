@@ -4,7 +4,10 @@
 #include "gl/loader.h"
 #include "graph/guard.h"
 #include "shader/iterations.h"
+#include <algorithm>
+#include <cstring>
 #include <fmt/format.h>
+#include <set>
 #include <utility>
 
 namespace kestrel {
@@ -81,6 +84,7 @@ bool Executor::run(const FrameScene& frame, Causes events) {
         samples_.clear();
     }
     report_.overflows.clear();
+    uncounted_.clear();
     schedule(current, events, lastEvents_, states_);
     // What came up stays pending until the pass has run, also if the frame is left early.
     for (PassState& state : states_)
@@ -91,10 +95,16 @@ bool Executor::run(const FrameScene& frame, Causes events) {
         unfinished_ = true;
         for (size_t i = 0; i < current.passes.size(); ++i) {
             if (!states_[i].runs) continue;
+            // What keeps something cannot run twice: what it builds on is known to be whole first.
+            const bool counted =
+                uncounted_.empty() || current.passes[i].repeatable || countersBehind_[i].empty();
+            if (!counted && !countersFit()) return false;
             if (!runPass(static_cast<int>(i), frame)) return false;
             states_[i].pending = Causes::None;
             states_[i].done = true;
+            if (!current.passes[i].counters.empty()) uncounted_.push_back(static_cast<int>(i));
         }
+        if (!countersFit()) return false;
         collectSamples(frame.info.index);
         // Whoever reads the results back sees what shaders wrote.
         glMemoryBarrier(barrierBits(Barrier::BufferUpdate));
@@ -127,6 +137,42 @@ bool Executor::runPass(int index, const FrameScene& frame) {
     }
     if (options.checkFinite) checkOutputs(pass);
     return true;
+}
+
+bool Executor::countersFit() {
+    std::vector<std::pair<int, const PlanCounter*>> counters;
+    for (const int pass : std::exchange(uncounted_, {}))
+        for (const PlanCounter& counter : plan().passes[static_cast<size_t>(pass)].counters)
+            counters.emplace_back(pass, &counter);
+    if (counters.empty()) return true;
+    if (counts_.bytes() < 4 * counters.size()) counts_ = gl::Buffer(4 * counters.size(), "Counters");
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    for (size_t i = 0; i < counters.size(); ++i) {
+        const gl::Buffer& from = resources_.buffer(counters[i].second->resource);
+        glCopyNamedBufferSubData(from.name(), counts_.name(), static_cast<GLintptr>(from.offset()),
+                                 static_cast<GLintptr>(4 * i), 4);
+    }
+    const std::vector<std::byte> bytes = counts_.download();
+    std::set<int> tooSmall;
+    for (size_t i = 0; i < counters.size(); ++i) {
+        std::uint32_t wanted = 0;
+        std::memcpy(&wanted, bytes.data() + 4 * i, 4);
+        const auto& [pass, counter] = counters[i];
+        if (wanted <= counter->capacity) continue;
+        report_.overflows[plan().passes[static_cast<size_t>(pass)].name][counter->port] = wanted;
+        tooSmall.insert(pass);
+    }
+    if (tooSmall.empty()) return true;
+    for (size_t i = 0; i < states_.size(); ++i) {
+        PassState& state = states_[i];
+        const auto reached = [&](int pass) { return tooSmall.contains(pass); };
+        if (!state.runs || !state.done) continue;
+        if (!reached(static_cast<int>(i)) && std::ranges::none_of(countersBehind_[i], reached)) continue;
+        swapHistories(plan().passes[i]); // back: the pass runs again
+        state.done = false;
+        state.pending |= state.causes;
+    }
+    return false;
 }
 
 void Executor::swapHistories(const PlanPass& pass) {
@@ -255,7 +301,8 @@ void Executor::collectSamples(std::uint32_t frameIndex) {
         const PlanStep& step = plan().steps.at(sample.step);
         const PlanPass& pass = plan().passes.at(static_cast<size_t>(step.pass));
         samples_.push_back({pass.name, pass.type, step.step.name,
-                            step.step.group.empty() ? pass.name : step.step.group, frameIndex, sample.ms});
+                            step.step.group.empty() ? pass.name : step.step.group, frameIndex, sample.ms,
+                            step.preview});
     }
 }
 

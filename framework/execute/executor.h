@@ -18,6 +18,7 @@ struct StepSample {
     std::string pass, type, step, group; // group: what the time counts as; the pass's name if it says nothing
     std::uint32_t frame = 0;
     double ms = 0;
+    bool preview = false; // it ran for previews alone
 };
 
 struct ExecutorOptions {
@@ -38,8 +39,9 @@ public:
     using StateText = std::function<std::string(const PlanPass&)>;
     void adopt(std::shared_ptr<const Plan> next, const StateText& stateText = {});
 
-    // Runs one frame. False: a pass overflowed (see report); compile with World::grown, adopt, and call
-    // again with the same frame. What ran before the overflow and has kept its results does not run again.
+    // Runs one frame. False: a pass overflowed (see report); compile with CompileOptions::grown, adopt, and
+    // call again with the same frame. What ran before the overflow and has kept its results does not run
+    // again.
     bool run(const FrameScene& frame, Causes events);
     // After run() said false: the frame is given up. What did not run stays due.
     void abandonFrame();
@@ -51,6 +53,7 @@ public:
     [[nodiscard]] const Plan& plan() const;
     [[nodiscard]] Resources& resources() { return resources_; }
     [[nodiscard]] ShaderLibrary& shaders() { return library_; }
+    [[nodiscard]] const Programs& programs() const { return programs_; }
     // Which clock the samples come from (gl::StepClock::name).
     [[nodiscard]] std::string clockName() const;
 
@@ -76,6 +79,9 @@ private:
     std::optional<glm::uvec2> bindTarget(const PlanStep& step, const StepBindings& bindings);
     // Before a step that reads single levels of a texture, and back after it.
     void restrictMips(const PlanStep& step, const StepBindings& bindings, bool restrict);
+    // Reads the counters of the passes that ran since the last reading. False: an output was too small; what
+    // used it is due again.
+    bool countersFit();
     void collectSamples(std::uint32_t frameIndex);
     void checkIterations();
     void checkOutputs(const PlanPass& pass);
@@ -88,10 +94,13 @@ private:
     gl::SamplerCache samplers_;
     ViewBlocks views_;
     std::shared_ptr<const Plan> plan_;
-    std::vector<StepBindings> bindings_; // of each step
-    std::vector<std::string> labels_;    // "pass 'a', step 'b'" of each step
-    std::vector<PassState> states_;      // of each pass
-    std::map<std::string, Kept> kept_;   // by pass
+    std::vector<StepBindings> bindings_;           // of each step
+    std::vector<std::string> labels_;              // "pass 'a', step 'b'" of each step
+    std::vector<PassState> states_;                // of each pass
+    std::map<std::string, Kept> kept_;             // by pass
+    std::vector<std::vector<int>> countersBehind_; // of each pass: those with counters whose results reach it
+    std::vector<int> uncounted_; // passes with counters that ran in this frame and were not read yet
+    gl::Buffer counts_;          // where counters are gathered
     FrameReport report_;
     std::vector<StepSample> samples_;
     std::unique_ptr<gl::StepClock> clock_;

@@ -2,6 +2,7 @@
 #include "draw/gpu_scene.h"
 #include "execute/executor.h"
 #include <fmt/format.h>
+#include <set>
 
 namespace kestrel {
 
@@ -109,6 +110,16 @@ void Executor::adopt(std::shared_ptr<const Plan> next, const StateText& stateTex
     bindings_ = std::move(bindings);
     labels_ = std::move(labels);
     plan_ = std::move(next);
+    countersBehind_.assign(plan_->passes.size(), {});
+    for (size_t i = 0; i < plan_->passes.size(); ++i) { // in order: what stands behind an input is complete
+        std::set<int> behind;
+        for (const int input : plan_->passes[i].inputs) {
+            const std::vector<int>& further = countersBehind_[static_cast<size_t>(input)];
+            behind.insert(further.begin(), further.end());
+            if (!plan_->passes[static_cast<size_t>(input)].counters.empty()) behind.insert(input);
+        }
+        countersBehind_[i].assign(behind.begin(), behind.end());
+    }
 }
 
 } // namespace kestrel

@@ -1,26 +1,24 @@
 #include "execute/programs.h"
 #include "gl/loader.h"
 #include "shader/iterations.h"
+#include <algorithm>
 #include <optional>
+#include <string_view>
 
 namespace kestrel {
 
 namespace {
 
-int occurrences(const std::string& text, std::string_view name) {
-    int found = 0;
-    for (size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + name.size()))
-        ++found;
-    return found;
-}
+// What shaders/lib/last_view.glsl writes into every text that includes it.
+constexpr std::string_view lastViewMark = "READS_LAST_VIEW";
 
-// Members of uniform blocks all count as active, so the text must tell: shared/view.h names the matrix once,
-// where it declares it. To find it in a comment costs a run too many, never one too few.
+// Members of uniform blocks all count as active, so a shader that reads the last frame's view says so by
+// including lib/last_view.glsl, which alone knows the member's name (a test holds the shaders to that).
 bool readsLastMotion(const ComposedProgram& composed, const gl::Program& program) {
     if (glGetAttribLocation(program.name(), "in_previous_position") >= 0) return true;
     if (program.slot("scene_previous_positions") || program.slot("ScenePreviousPositions")) return true;
     for (const ComposedStage& stage : composed.stages)
-        if (occurrences(stage.text, "previousViewProjection") > 1) return true;
+        if (stage.text.find(lastViewMark) != std::string::npos) return true;
     return false;
 }
 
@@ -53,13 +51,16 @@ void Programs::adopt(const Plan& plan, ShaderLibrary& library, const Capabilitie
             note(error);
         }
 
+    ++plans_;
     std::vector<std::shared_ptr<Entry>> steps(plan.steps.size());
     for (size_t i = 0; i < steps.size(); ++i) {
         const int request = plan.steps[i].program;
         if (request < 0 || !composed.at(static_cast<size_t>(request))) continue;
         const ComposedProgram& text = *composed[static_cast<size_t>(request)];
         const Key key{text.key, colourAttachments(plan.steps[i], plan)};
-        std::shared_ptr<Entry>& entry = cache_[key];
+        Cached& cached = cache_[key];
+        cached.lastUse = plans_;
+        std::shared_ptr<Entry>& entry = cached.entry;
         if (!entry) try {
                 auto made = std::make_shared<Entry>();
                 made->program = std::make_unique<gl::Program>(text, key.second, capabilities);
@@ -73,9 +74,19 @@ void Programs::adopt(const Plan& plan, ShaderLibrary& library, const Capabilitie
             }
         steps[i] = entry;
     }
-    std::erase_if(cache_, [](const auto& item) { return item.second == nullptr; });
+    std::erase_if(cache_, [](const auto& item) { return item.second.entry == nullptr; });
     if (!problems.empty()) throw InputError(std::move(problems));
     steps_ = std::move(steps);
+    forgetOld();
+}
+
+void Programs::forgetOld() {
+    std::vector<std::pair<std::uint64_t, Key>> unused;
+    for (const auto& [key, cached] : cache_)
+        if (cached.lastUse != plans_) unused.emplace_back(cached.lastUse, key);
+    if (unused.size() <= maxUnused) return;
+    std::ranges::sort(unused);
+    for (size_t i = 0; i < unused.size() - maxUnused; ++i) cache_.erase(unused[i].second);
 }
 
 } // namespace kestrel

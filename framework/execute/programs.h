@@ -12,6 +12,10 @@ namespace kestrel {
 
 class Programs {
 public:
+    // Programs that no step uses stay a while: who compares two settings goes back and forth. More are
+    // forgotten, those first that were not used for longest.
+    static constexpr size_t maxUnused = 64;
+
     struct Entry {
         std::unique_ptr<gl::Program> program;
         std::string name;      // its files, for messages
@@ -24,12 +28,20 @@ public:
     // problems of all programs; the programs of the plan before stay then.
     void adopt(const Plan& plan, ShaderLibrary& library, const Capabilities& capabilities);
 
+    [[nodiscard]] size_t cached() const { return cache_.size(); }
     // Of a step by its index; null if it has none.
     [[nodiscard]] Entry* of(int step) const { return steps_.at(static_cast<size_t>(step)).get(); }
 
 private:
     using Key = std::pair<std::uint64_t, std::vector<std::string>>;
-    std::map<Key, std::shared_ptr<Entry>> cache_;
+    struct Cached {
+        std::shared_ptr<Entry> entry;
+        std::uint64_t lastUse = 0; // number of the plan
+    };
+    void forgetOld();
+
+    std::map<Key, Cached> cache_;
+    std::uint64_t plans_ = 0;
     std::vector<std::shared_ptr<Entry>> steps_;
 };
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace kestrel {
 
@@ -42,7 +43,7 @@ PassSet reusePasses(const Graph& graph, const Registry& registry, const PassSet&
         const PassType* type = registry.find(pass.type);
         if (old == before.end() || type == nullptr) continue;
         const Pass& made = *passes.at(pass.name);
-        if (typeid(*old->second) != typeid(made)) continue;
+        if (old->second->typeInstance != made.typeInstance) continue;
         setProperties(*old->second, *type, pass);
         passes[pass.name] = old->second;
     }
@@ -72,11 +73,12 @@ Renderer::~Renderer() = default;
 // ---- compiling
 
 void Renderer::compileGraph(const Graph& graph) {
-    World world{facts_, capabilities_, options_.size, grown_};
+    const World world{facts_, capabilities_, options_.size};
     const auto start = Clock::now();
     PassSet passes = reusePasses(graph, registry_, passes_);
-    auto plan = std::make_shared<const Plan>(compile(
-        graph, registry_, passes, world, {options_.keepAll, options_.shareMemory, options_.previews}));
+    auto plan = std::make_shared<const Plan>(
+        compile(graph, registry_, passes, world,
+                {options_.keepAll, options_.shareMemory, options_.previews, grown_}));
     compileMs_ = millisecondsSince(start);
     executor_->adopt(std::move(plan), [&](const PlanPass& pass) {
         std::string text;
@@ -87,8 +89,19 @@ void Renderer::compileGraph(const Graph& graph) {
     passes_ = std::move(passes);
 }
 
+// Growth holds for a pass as it is: of another type or with other properties it may need less.
+void Renderer::dropGrowth(const Graph& next) {
+    std::erase_if(grown_, [&](const auto& item) {
+        const GraphPass* before = graph_.find(item.first);
+        const GraphPass* now = next.find(item.first);
+        return before == nullptr || now == nullptr || before->type != now->type ||
+               before->properties != now->properties;
+    });
+}
+
 void Renderer::setGraph(Graph graph) {
     requireValid(graph, registry_);
+    dropGrowth(graph);
     try {
         compileGraph(graph);
     } catch (...) {
@@ -108,6 +121,7 @@ void Renderer::set(const std::string& setting) {
 void Renderer::setSize(Extent size) {
     const Extent before = std::exchange(options_.size, size);
     if (before == size) return;
+    grown_.clear();
     try {
         compileGraph(graph_);
     } catch (...) {
@@ -130,12 +144,15 @@ void Renderer::setPreviews(std::vector<PortRef> previews) {
 void Renderer::setScene(Scene scene) {
     const int camera = cameraIndex(scene, "");
     const SceneFacts before = std::exchange(facts_, gatherFacts(scene));
+    grown_.clear();
     try {
         compileGraph(graph_);
     } catch (...) {
         facts_ = before;
         throw;
     }
+    flattener_.reset(); // it reads the scene before
+    geometry_ = nullptr;
     scene_ = std::move(scene);
     gpu_ = std::make_unique<GpuScene>(scene_);
     camera_ = camera;
@@ -202,8 +219,9 @@ void Renderer::takeGeometry() {
     if (geometryMade_ &&
         (!facts_.geometryMoves || (geometryTime_ == time_ && geometryPreviousTime_ == previous)))
         return;
-    geometry_ = flatten(scene_, time_, previous);
-    gpu_->update(geometry_);
+    if (!flattener_) flattener_.emplace(scene_);
+    geometry_ = &flattener_->at(time_, previous);
+    gpu_->update(*geometry_);
     geometryTime_ = time_;
     geometryPreviousTime_ = previous;
     geometryMade_ = true;
@@ -229,14 +247,21 @@ int Renderer::runFrame(const FrameScene& frame, Causes events) {
     int recompiled = 0;
     try {
         while (!executor_->run(frame, events)) {
-            const auto needed = executor_->report().overflows;
-            const auto& [port, elements] = *needed.begin();
-            if (++recompiled > maxRecompilations)
-                throw InputError(
-                    fmt::format("{} overflows after growing {} times; it now asks for {} elements", port,
-                                maxRecompilations, elements));
-            for (const auto& [grownPort, count] : needed)
-                grown_[grownPort] = std::max(grown_[grownPort], count);
+            const std::map<std::string, Growth> needed = executor_->report().overflows;
+            if (++recompiled > maxRecompilations) {
+                const auto& [pass, ports] = *needed.begin();
+                const auto& [port, elements] = *ports.begin();
+                throw MachineError(
+                    fmt::format("{}.{} overflows after growing {} times; it now asks for {} elements", pass,
+                                port, maxRecompilations, elements));
+            }
+            // At once as many as were wanted; where that was not enough, by half at least, so that what grows
+            // a little every frame is not compiled anew every frame.
+            for (const auto& [pass, ports] : needed)
+                for (const auto& [port, elements] : ports) {
+                    std::uint64_t& grown = grown_[pass][port];
+                    grown = std::max(elements, grown + grown / 2);
+                }
             compileGraph(graph_);
         }
     } catch (...) {
@@ -252,7 +277,7 @@ const FrameRecord& Renderer::frame() {
     takeGeometry();
     lights_ = lightsAt(scene_, time_);
     gpu_->setLights(lights_);
-    const FrameScene frame{frameInfo(), &scene_, &facts_, &geometry_, &lights_, gpu_.get()};
+    const FrameScene frame{frameInfo(), &scene_, &facts_, geometry_, &lights_, gpu_.get()};
     const FrameConditions now{frame.info.camera, frame.info.cameraState, time_,
                               jumped_,           options_.size,          lights_};
     const Causes events = lastConditions_ ? eventsBetween(*lastConditions_, now, facts_) : Causes::All;
@@ -290,10 +315,23 @@ namespace {
 
 // Why a plan does not hold a port that the graph has.
 std::string whyNotHeld(const Plan& plan, const PortRef& port) {
-    for (const LeftOut& item : plan.leftOut)
-        if (item.what == port.text() || item.what == port.pass)
-            return fmt::format("{} is left out, because {}", port.text(), item.why);
+    for (const std::vector<LeftOut>* items : {&plan.previews.leftOut, &plan.leftOut})
+        for (const LeftOut& item : *items)
+            if (item.what == port.text() || item.what == port.pass)
+                return fmt::format("{} is left out, because {}", port.text(), item.why);
     return {};
+}
+
+// The other ports whose content lies in bytes of this resource at other times of a frame.
+std::vector<std::string> sharers(const Plan& plan, int resource) {
+    const PlanResource& held = plan.resources.at(static_cast<size_t>(resource));
+    const auto end = [](const PlanResource& of) { return of.offset + of.desc.totalBytes(); };
+    std::vector<std::string> ports;
+    for (const PlanResource& other : plan.resources)
+        if (&other != &held && other.object >= 0 && other.object == held.object && other.offset < end(held) &&
+            held.offset < end(other))
+            ports.push_back(other.port.text());
+    return ports;
 }
 
 } // namespace
@@ -307,8 +345,14 @@ int heldResource(const Plan& plan, const PortRef& port) {
             const auto found = pass.ports.find(name);
             const bool held = found != pass.ports.end() && found->second >= 0;
             if (PortRef{pass.name, name} == port) {
-                if (held) return found->second;
-                throw InputError(fmt::format("{} is a shader module: it has no content", port.text()));
+                if (!held)
+                    throw InputError(fmt::format("{} is a shader module: it has no content", port.text()));
+                if (const std::vector<std::string> others = sharers(plan, found->second); !others.empty())
+                    throw InputError(fmt::format(
+                        "{} shares its memory with {}, so that its content is lost within the frame: "
+                        "ask for it as a preview (RenderOptions::previews, --output)",
+                        port.text(), fmt::join(others, ", ")));
+                return found->second;
             }
             if (held) names.push_back(pass.name + "." + name);
         }

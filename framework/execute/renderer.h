@@ -50,8 +50,8 @@ public:
     const FrameRecord& frame();
     [[nodiscard]] const FrameRecord& last() const { return record_; }
 
-    // The content of an output, a preview, or with keepAll of any port that the plan holds: a texture's layer
-    // and level as floats, row 0 at the top. Throws InputError with the near name if it is not held.
+    // The content of an output, a preview, or of any port that the plan holds in memory of its own: a
+    // texture's layer and level as floats, row 0 at the top. Throws InputError as heldResource() does.
     [[nodiscard]] Image read(const PortRef& port, int layer = 0, int mip = 0);
     [[nodiscard]] std::vector<std::byte> readBytes(const PortRef& port);
     // What it is. Throws InputError if it is not held.
@@ -90,6 +90,7 @@ private:
     int runFrame(const FrameScene& frame, Causes events);
     void takeTime();
     void takeGeometry();
+    void dropGrowth(const Graph& next);
     [[nodiscard]] FrameInfo frameInfo() const;
     [[nodiscard]] bool moves() const;
 
@@ -100,11 +101,12 @@ private:
     RenderOptions options_;
     SceneFacts facts_;
     PassSet passes_;
-    std::map<std::string, std::uint64_t> grown_;
+    std::map<std::string, Growth> grown_; // by pass
     std::unique_ptr<GpuScene> gpu_;
     std::unique_ptr<Executor> executor_;
 
-    Geometry geometry_;
+    std::optional<Flattener> flattener_; // of scene_
+    const Geometry* geometry_ = nullptr; // the flattener's
     std::vector<LightState> lights_;
     int camera_ = 0;
     std::optional<CameraState> freeCamera_;
@@ -123,7 +125,8 @@ private:
 PassSet reusePasses(const Graph& graph, const Registry& registry, const PassSet& before);
 
 // The resource that holds a port's content under a plan. Throws InputError saying why there is none (left
-// out, a shader module, unknown: with the near name).
+// out, a shader module, unknown: with the near name), or that its memory serves others too, so that only a
+// preview keeps what it holds.
 int heldResource(const Plan& plan, const PortRef& port);
 
 } // namespace kestrel

@@ -1,6 +1,5 @@
 #include "execute/step_bindings.h"
 #include "shader/iterations.h"
-#include <cctype>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -39,32 +38,11 @@ const char* kindText(Kind kind) {
     return "";
 }
 
-// The names that a view block of this binding can have: the binding's name is a module prefix and a port,
-// and where one ends and the other begins cannot be seen from it.
-bool isViewOf(std::string_view slot, const PlanBinding& binding) {
-    const std::string& name = binding.name;
-    if (slot == name + "View") return true; // of a block: its name has the capitals already
-    for (size_t at = 0; at != std::string::npos;) {
-        if (slot == name.substr(0, at) + blockName(name.substr(at)) + "View") return true;
-        at = name.find('_', at);
-        if (at != std::string::npos) ++at;
-    }
-    return false;
-}
-
-std::optional<StepBindings::ViewSlot> viewOf(const std::string& slot, unsigned int unit, const Plan& plan,
+std::optional<StepBindings::ViewSlot> viewOf(const std::string& slot, unsigned int unit,
                                              const PlanStep& step) {
-    const auto ofResource = [&](int resource, bool previous) {
-        const Desc& desc = plan.resources.at(static_cast<size_t>(resource)).desc;
-        return StepBindings::ViewSlot{unit, desc.view, desc.extent, resource, previous};
-    };
-    for (const PlanBinding& binding : step.bindings)
-        if (binding.resource >= 0 && isViewOf(slot, binding))
-            return ofResource(binding.resource, binding.previous);
-    for (const auto& [port, resource] : plan.passes.at(static_cast<size_t>(step.pass)).ports)
-        if (resource >= 0 && slot == blockName(port) + "View") return ofResource(resource, false);
     for (const PlanView& view : step.views)
-        if (slot == view.name) return StepBindings::ViewSlot{unit, view.view, view.extent, -1, false};
+        if (view.name == slot)
+            return StepBindings::ViewSlot{unit, view.view, view.extent, view.resource, view.previous};
     return std::nullopt;
 }
 
@@ -83,20 +61,6 @@ void resolveAttachments(const Plan& plan, const PlanStep& step, StepBindings& re
 }
 
 } // namespace
-
-std::string blockName(std::string_view port) {
-    std::string name;
-    bool capital = true;
-    for (const char c : port) {
-        if (c == '_') {
-            capital = true;
-            continue;
-        }
-        name += capital ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
-        capital = false;
-    }
-    return name;
-}
 
 StepBindings resolveBindings(const Plan& plan, int stepIndex, const Programs::Entry* program,
                              const std::function<bool(std::string_view)>& boundByScene) {
@@ -127,8 +91,7 @@ StepBindings resolveBindings(const Plan& plan, int stepIndex, const Programs::En
             result.iterations = slot.unit;
         } else if (boundByScene(name)) {
             result.scene = true;
-        } else if (const auto view = viewOf(name, slot.unit, plan, step);
-                   view && slot.kind == Kind::UniformBlock) {
+        } else if (const auto view = viewOf(name, slot.unit, step); view && slot.kind == Kind::UniformBlock) {
             result.views.push_back(*view);
         } else {
             std::vector<std::string> names;

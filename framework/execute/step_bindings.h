@@ -36,7 +36,4 @@ struct StepBindings {
 StepBindings resolveBindings(const Plan& plan, int step, const Programs::Entry* program,
                              const std::function<bool(std::string_view)>& boundByScene);
 
-// The GLSL name of a block for a port: a capital at the begin and after each underscore, no underscores.
-std::string blockName(std::string_view port);
-
 } // namespace kestrel

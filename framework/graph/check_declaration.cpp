@@ -46,6 +46,9 @@ private:
     void note(const std::string& port, std::string message) {
         problems_.push_back({port, std::move(message)});
     }
+    void noteLimit(const std::string& port, std::string message) {
+        problems_.push_back({port, std::move(message), true});
+    }
 
     // The port's entry in the pass type's table; an unknown one is noted.
     const PortInfo* known(const std::string& port, const std::string& what) {
@@ -82,6 +85,18 @@ private:
         if (isModule(info->kind) && output.same.empty() && findModule(declaration_, output.port) == nullptr)
             note(output.port, "no module file is declared for it");
         if (!isModule(info->kind)) checkSize(output);
+        if (!output.counter.empty()) checkCounter(output);
+    }
+
+    void checkCounter(const Output& output) {
+        if (known(output.counter, "counts by") == nullptr) return;
+        const Output* counter = findOutput(declaration_, output.counter);
+        if (counter == nullptr || counter->desc.kind != ResourceKind::Buffer || counter->desc.bytes < 4)
+            note(output.port, fmt::format("its counter '{}' is no buffer that is declared", output.counter));
+        else if (!counter->clear)
+            note(output.port,
+                 fmt::format("its counter '{}' has no clear value to count from", output.counter));
+        if (output.capacity == 0) note(output.port, "has a counter, but no capacity");
     }
 
     void checkLikeness(const Output& output, const PortInfo& info, const std::string& input) {
@@ -108,9 +123,9 @@ private:
         const auto side = static_cast<std::uint32_t>(volume ? caps.max3DTextureSize : caps.maxTextureSize);
         const auto layers = static_cast<std::uint32_t>(volume ? caps.max3DTextureSize : caps.maxArrayLayers);
         if (e.width > side || e.height > side || e.depth > layers)
-            note(output.port,
-                 fmt::format("the texture {} is larger than the device allows ({} a side, {} {})",
-                             describe(desc), side, layers, volume ? "deep" : "layers"));
+            noteLimit(output.port,
+                      fmt::format("the texture {} is larger than the device allows ({} a side, {} {})",
+                                  describe(desc), side, layers, volume ? "deep" : "layers"));
     }
 
     void checkModule(const Module& module) {
@@ -180,15 +195,15 @@ private:
             note(use.port, fmt::format("{} writes by {}", what, accessName(use.access)));
         const auto limit = static_cast<std::uint64_t>(network_.world.capabilities.maxStorageBlockBytes);
         if (use.access == Access::Storage && desc.bytes > limit)
-            note(use.port, fmt::format("{} needs a storage block of {} bytes; the device allows {}", what,
-                                       desc.bytes, limit));
+            noteLimit(use.port, fmt::format("{} needs a storage block of {} bytes; the device allows {}",
+                                            what, desc.bytes, limit));
         const auto texels = static_cast<std::uint64_t>(network_.world.capabilities.maxTextureBufferTexels);
         if (buffer && desc.format != Format::None &&
             (use.access == Access::Fetch || use.access == Access::Image) &&
             desc.bytes / static_cast<std::uint64_t>(formatInfo(desc.format).bytes) > texels)
-            note(use.port,
-                 fmt::format("{} needs a texel buffer of {} bytes ({}); the device allows {} texels", what,
-                             desc.bytes, formatInfo(desc.format).name, texels));
+            noteLimit(use.port,
+                      fmt::format("{} needs a texel buffer of {} bytes ({}); the device allows {} texels",
+                                  what, desc.bytes, formatInfo(desc.format).name, texels));
     }
 
     // What is provided and requested.

@@ -5,6 +5,8 @@
 #include "graph/memory.h"
 #include "graph/network.h"
 #include "graph/plan.h"
+#include <algorithm>
+#include <utility>
 
 namespace kestrel {
 
@@ -14,6 +16,7 @@ PassSet makePasses(const Graph& graph, const Registry& registry) {
         const PassType* type = registry.find(document.type);
         KESTREL_CHECK(type != nullptr);
         std::shared_ptr<Pass> pass = guarded(document.name, "construction", [&] { return type->make(); });
+        pass->typeInstance = type->instance;
         setProperties(*pass, *type, document);
         passes.emplace(document.name, std::move(pass));
     }
@@ -30,10 +33,11 @@ void setProperties(Pass& pass, const PassType& type, const GraphPass& document) 
     }
 }
 
-Plan compile(const Graph& graph, const Registry& registry, const PassSet& passes, const World& world,
-             const CompileOptions& options) {
+namespace {
+
+Plan compileStages(const Graph& graph, const Registry& registry, const PassSet& passes, const World& world,
+                   const CompileOptions& options) {
     using namespace compiler;
-    if (auto problems = validate(graph, registry); !problems.empty()) throw InputError(std::move(problems));
 
     // Resolve: names become nodes, ports and a topological order.
     Network network = resolve(graph, registry, passes, world, options);
@@ -55,6 +59,52 @@ Plan compile(const Graph& graph, const Registry& registry, const PassSet& passes
     planBarriers(plan);
 
     plan.leftOut = reportLeftOut(network);
+    return plan;
+}
+
+std::uint64_t heldBytes(const MemoryReport& memory) { return memory.transient + memory.persistent; }
+
+// The steps of a plan by "pass.step", each with what tells whether it does the same: program and bindings.
+std::map<std::string, std::string> stepTexts(const Plan& plan) {
+    std::map<std::string, std::string> texts;
+    for (const PlanStep& step : plan.steps) {
+        std::string text;
+        for (const std::string& file : step.step.shaders) text += file + " ";
+        for (const auto& [name, value] : step.step.defines) text += name + "=" + value + " ";
+        for (const PlanBinding& binding : step.bindings) text += binding.name + " " + binding.port + " ";
+        texts.emplace(plan.passes[static_cast<size_t>(step.pass)].name + "." + step.step.name,
+                      std::move(text));
+    }
+    return texts;
+}
+
+// Looking changes nothing: the figures are those without previews, what these cost stands apart.
+void setPreviewsApart(Plan& plan, const Plan& without) {
+    plan.previews.memory =
+        heldBytes(plan.memory) - std::min(heldBytes(plan.memory), heldBytes(without.memory));
+    plan.previews.leftOut = std::exchange(plan.leftOut, without.leftOut);
+    plan.memory = without.memory;
+    const auto before = stepTexts(without), now = stepTexts(plan);
+    for (PlanStep& step : plan.steps) {
+        const std::string name = plan.passes[static_cast<size_t>(step.pass)].name + "." + step.step.name;
+        const auto known = before.find(name);
+        step.preview = known == before.end();
+        if (!step.preview && known->second != now.at(name)) plan.previews.altered.push_back(name);
+    }
+}
+
+} // namespace
+
+Plan compile(const Graph& graph, const Registry& registry, const PassSet& passes, const World& world,
+             const CompileOptions& options) {
+    if (auto problems = validate(graph, registry); !problems.empty()) throw InputError(std::move(problems));
+    Plan plan = compileStages(graph, registry, passes, world, options);
+    if (options.previews.empty()) return plan;
+    CompileOptions without = options;
+    without.previews.clear();
+    // A graph without outputs has nothing but previews.
+    if (!graph.outputs.empty())
+        setPreviewsApart(plan, compileStages(graph, registry, passes, world, without));
     return plan;
 }
 

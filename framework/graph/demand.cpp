@@ -32,7 +32,8 @@ Inputs inputsOf(const Network& network, const Node& node) {
 
 // Declares and completes what follows from the inputs: what is the same as an input, or an input changed in
 // place, has its descriptor; a module without an output entry provides nothing.
-Declaration declare(const Network& network, const Node& node, const Demand& demand) {
+Declaration declare(const Network& network, const Node& node, Demand demand) {
+    if (node.grown != nullptr) demand.setGrown(*node.grown);
     Declaration declaration = guarded(
         node.name(), "declare", [&] { return node.instance->declare(network.world, node.inputs, demand); });
     for (Output& output : declaration.outputs) {
@@ -198,24 +199,33 @@ void noteBrokenPromises(const Network& network, const Node& node, std::vector<Pr
 
 void refuseProblems(const Network& network) {
     std::vector<Problem> problems;
+    bool machine = true; // nothing is wrong but the machine
     for (int i = 0; i < static_cast<int>(network.nodes.size()); ++i) {
         const Node& node = network.at(i);
         if (!node.live) continue;
         std::vector<DeclarationProblem> found = node.real.problems;
         for (auto& problem : checkDeclaration(network, i, node.real, node.demand))
             found.push_back(std::move(problem));
+        const size_t before = problems.size();
         noteBrokenPromises(network, node, problems);
-        for (const DeclarationProblem& problem : found)
+        machine = machine && problems.size() == before;
+        for (const DeclarationProblem& problem : found) {
             problems.push_back(
                 {placeOf(node, problem.port),
                  fmt::format("pass '{}' ({}){}: {}", node.name(), node.type->name,
                              problem.port.empty() ? "" : ", '" + problem.port + "'", problem.message)});
+            machine = machine && problem.machine;
+        }
     }
+    const size_t known = problems.size();
     noteMissingOutputs(network, problems);
+    machine = machine && problems.size() == known;
     std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
         return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
     });
-    if (!problems.empty()) throw InputError(std::move(problems));
+    if (problems.empty()) return;
+    if (machine) throw MachineError(std::move(problems));
+    throw InputError(std::move(problems));
 }
 
 } // namespace

@@ -18,9 +18,18 @@ struct Source {
 // A use of a resource by a step, named as in its program; through a module too.
 struct BoundUse {
     std::string name; // GLSL name, empty for accesses that no shader sees
-    std::string port; // of the pass itself, else empty
+    std::string path; // of the module that it is inherited through (graph/glsl_names.h)
     Source source;    // what is bound: an output or internal, `same` resolved
     Use use;
+};
+
+// A view block that a step's program may have.
+struct BoundView {
+    std::string name;
+    bool previous = false;
+    std::optional<Source> source;
+    View view;
+    Extent extent;
 };
 
 struct Node {
@@ -35,6 +44,7 @@ struct Node {
     Declaration full;       // with every demand
     Declaration real;       // with the real demand; empty unless live
     Inputs inputs;
+    const Growth* grown = nullptr; // what its outputs needed before
     Demand demand = Demand::nothing();
     bool live = false;
 
@@ -91,11 +101,10 @@ void forEachRead(const Node& node, const Declaration& declaration, const Demand&
 std::vector<DeclarationProblem> checkDeclaration(const Network& network, int node,
                                                  const Declaration& declaration, const Demand& demand);
 
-// programs.cpp: GLSL names, uses inherited through modules, shader variants.
-std::string glslName(const std::string& prefix, const Use& use, ResourceKind kind, bool readBeside);
+// programs.cpp: uses inherited through modules, shader variants.
 std::vector<BoundUse> boundUses(const Network& network, int node, const Step& step);
 ProgramRequest programOf(const Network& network, int node, const Step& step);
-std::vector<PlanView> viewsOf(const Network& network, int node, const Step& step);
+std::vector<BoundView> viewsOf(const Network& network, int node, const Step& step);
 // The nodes that stand behind an input: its producer; of a module also those whose resources it brings along.
 std::set<int> producersBehind(const Network& network, int node, const std::string& input);
 

@@ -26,4 +26,9 @@ Bits Demand::requests(std::string_view port) const {
 
 void Demand::add(std::string port, Bits requests) { ports_[std::move(port)] |= requests; }
 
+void Pass::execute(const Step& step, Commands& commands) {
+    KESTREL_CHECK(step.run); // the step has nothing to run
+    step.run(*this, commands);
+}
+
 } // namespace kestrel

@@ -4,10 +4,13 @@
 #include "graph/types.h"
 #include "scene/facts.h"
 #include "shader/source.h"
+#include <concepts>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace kestrel {
@@ -18,8 +21,7 @@ class Commands; // execute/commands.h: what a step may do on the GPU
 struct World {
     SceneFacts facts;
     Capabilities capabilities;
-    Extent size{640, 360, 1};                   // of the frame, in pixels
-    std::map<std::string, std::uint64_t> grown; // "pass.port" -> elements needed after an overflow
+    Extent size{640, 360, 1}; // of the frame, in pixels
     // Extent of an image with this view: (size + 2 guard) / divisor, rounded up.
     [[nodiscard]] Extent extentOf(const View& view) const;
 };
@@ -43,7 +45,11 @@ private:
     std::map<std::string, Input, std::less<>> inputs_;
 };
 
-// Which outputs somebody reads, and what consumers take of the modules.
+// Output -> elements that it needed when it was too small.
+using Growth = std::map<std::string, std::uint64_t, std::less<>>;
+
+// Which outputs somebody reads, what consumers request of the modules, and how much room outputs needed
+// before.
 class Demand {
 public:
     static Demand everything() { return Demand(true); }
@@ -54,6 +60,14 @@ public:
     // The union of what consumers take of a module port.
     [[nodiscard]] Bits requests(std::string_view port) const;
     void add(std::string port, Bits requests = 0);
+    // Elements that an output of this pass must hold, since it overflowed in this scene, at this size and
+    // with these properties; 0: it did not. Their meaning is the pass's own, that of Output::capacity and
+    // Commands::overflow.
+    [[nodiscard]] std::uint64_t grown(std::string_view port) const {
+        const auto found = grown_.find(port);
+        return found == grown_.end() ? 0 : found->second;
+    }
+    void setGrown(Growth grown) { grown_ = std::move(grown); }
     // Whether anything at all is asked for.
     [[nodiscard]] bool any() const { return all_ || !ports_.empty(); }
     friend bool operator==(const Demand&, const Demand&) = default;
@@ -63,6 +77,7 @@ private:
         : all_(all) {}
     bool all_ = false;
     std::map<std::string, Bits, std::less<>> ports_;
+    Growth grown_;
 };
 
 // One use of a port (input, output or internal) by a step or a module.
@@ -88,16 +103,46 @@ struct ModuleUse {
     Bits requests = 0;
 };
 
+class Pass;
+
+// What a step runs when its turn comes: a member function of its pass with the arguments that its declaration
+// gives it, or anything that is called with the commands alone.
+class StepRun {
+public:
+    StepRun() = default;
+    template<class T, class... Arguments>
+    StepRun(void (T::*member)(Commands&, Arguments...),
+            std::type_identity_t<std::decay_t<Arguments>>... arguments)
+        : function_([=](Pass& pass, Commands& commands) {
+            (static_cast<T&>(pass).*member)(commands, arguments...);
+        }) {}
+    template<class T, class... Arguments>
+    StepRun(void (T::*member)(Commands&, Arguments...) const,
+            std::type_identity_t<std::decay_t<Arguments>>... arguments)
+        : function_([=](Pass& pass, Commands& commands) {
+            (static_cast<const T&>(pass).*member)(commands, arguments...);
+        }) {}
+    template<class F>
+    requires std::invocable<F&, Commands&> StepRun(F function)
+        : function_([function](Pass&, Commands& commands) { function(commands); }) {}
+    [[nodiscard]] explicit operator bool() const { return static_cast<bool>(function_); }
+    void operator()(Pass& pass, Commands& commands) const { function_(pass, commands); }
+
+private:
+    std::function<void(Pass&, Commands&)> function_;
+};
+
 // One piece of work: at most one program. Barriers, clocks and debug groups stand between steps.
 struct Step {
-    std::string name; // unique within the pass
-    std::vector<std::string>
-        shaders; // files by stage, "gbuffer/gbuffer.vert"…; empty: no program (uploads, copies, host)
-    Defines defines;
-    std::vector<Use> uses; // colour attachments are numbered in this order
-    std::vector<ModuleUse> modules;
-    std::string group =
-        {}; // what the time counts as: "generation", "tracing", "filter"…; empty: the pass's name
+    std::string name = {}; // unique within the pass; for people: reports, debuggers, errors
+    StepRun run = {};      // without it Pass::execute runs
+    // Files by stage, "gbuffer/gbuffer.vert"…; empty: no program (uploads, copies, host).
+    std::vector<std::string> shaders = {};
+    Defines defines = {};
+    std::vector<Use> uses = {}; // colour attachments are numbered in this order
+    std::vector<ModuleUse> modules = {};
+    // What the time counts as: "generation", "tracing", "filter"…; empty: the pass's name.
+    std::string group = {};
 };
 
 // A module that this pass provides at output `port`. `uses` are ports of this pass (inputs too) that the file
@@ -105,9 +150,9 @@ struct Step {
 struct Module {
     std::string port;
     std::string shader;
-    Defines defines;
-    std::vector<Use> uses;
-    std::vector<ModuleUse> modules;
+    Defines defines = {};
+    std::vector<Use> uses = {};
+    std::vector<ModuleUse> modules = {};
 };
 
 struct Output {
@@ -120,6 +165,12 @@ struct Output {
     std::string same = {};    // equals this input: no resource of its own
     std::string updates = {}; // is this input changed in place (copied first where another reader follows)
     bool keeps = false; // the pass itself reads what it wrote in earlier frames: never shared, never lost
+    // It may be too small: it holds `capacity` elements, and the first 32-bit word of this buffer of the pass
+    // (cleared each time the pass runs) counts those that were wanted. The executor reads the counts of a
+    // frame at once; where one is larger the plan is compiled anew with Demand::grown, and what used the
+    // output runs again.
+    std::string counter = {};
+    std::uint64_t capacity = 0;
 };
 
 // What was left out, and why: one sentence without full stop.
@@ -130,6 +181,7 @@ struct LeftOut {
 // A mistake that only declaring can find: `port` may be empty.
 struct DeclarationProblem {
     std::string port, message;
+    bool machine = false; // nothing is wrong but that this machine is too small or lacks something
 };
 
 struct Declaration {
@@ -154,14 +206,19 @@ public:
     Pass(const Pass&) = delete;
     Pass& operator=(const Pass&) = delete;
 
+    // PassType::instance of the type that made it; set by makePasses().
+    std::uint64_t typeInstance = 0;
+
     // Pure: no GL, no state. Called several times a compilation: first with every demand, then with the real
     // one until inputs and demand have settled. With less demand it may have fewer steps, defines and
     // outputs; what an output means never changes, and what is asked for must be declared.
     [[nodiscard]] virtual Declaration declare(const World& world, const Inputs& inputs,
                                               const Demand& demand) const = 0;
 
-    // Runs one declared step; called for each step in order, in every frame in which the pass runs.
-    virtual void execute(const Step& step, Commands& commands) = 0;
+    // Runs one declared step; called for each step in order, in every frame in which the pass runs. A step
+    // runs what it carries (Step::run); a pass whose steps all do the same overrides this instead, and one
+    // without steps neither.
+    virtual void execute(const Step& step, Commands& commands);
 };
 
 } // namespace kestrel

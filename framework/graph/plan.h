@@ -43,8 +43,10 @@ struct PlanObject {
 
 // One resource bound to one GLSL name in a step.
 struct PlanBinding {
-    std::string name;  // sampler, image or block name in the program, module prefix included
-    std::string port;  // of the pass, for uses of the pass itself; empty for uses inherited through a module
+    std::string name; // sampler, image or block name in the program, module path included
+    std::string
+        path; // of the module that it is inherited through, "tracer_near_"; empty: a use of the pass itself
+    std::string port;  // of the pass that declares the use
     int resource = -1; // index into Plan::resources
     Access access = Access::Fetch;
     bool write = false, previous = false, linear = false;
@@ -53,9 +55,11 @@ struct PlanBinding {
 
 // A uniform block that receives the ViewData of an image (shared/view.h), if the program declares it.
 struct PlanView {
-    std::string name; // block name in the program, module prefix included: "DepthView", "tracer_DepthView"
+    std::string name; // block name in the program, module path included: "DepthView", "tracer_DepthView"
     View view;
-    Extent extent; // of the image, guard band included
+    Extent extent;     // of the image, guard band included
+    int resource = -1; // that the image is; -1: only the view is known
+    bool previous = false;
 };
 
 // Before a step, in this order: its barrier, its copies, the clears of its pass (first step only).
@@ -67,12 +71,22 @@ struct PlanStep {
     Barrier barrier = Barrier::None;         // before the step
     std::vector<std::pair<int, int>> copies; // resources copied before the step (from, to): in-place updates
                                              // with another reader
-    std::vector<PlanView> views;             // of every texture port of the pass and of its modules
+    std::vector<PlanView> views;             // of every port of the pass and of its modules
+    bool preview = false;                    // runs for previews alone
+};
+
+// An output that may turn out too small: the executor reads how many elements were wanted.
+struct PlanCounter {
+    std::string port;           // whose elements are counted
+    int resource = -1;          // its first 32-bit word is the count
+    std::uint64_t capacity = 0; // elements
 };
 
 struct PlanPass {
     std::string name, type;
     std::shared_ptr<Pass> instance;
+    std::vector<PlanCounter> counters;
+    bool repeatable = true; // running it twice in a frame gives what running it once gives: it keeps nothing
     Causes depends = Causes::None;
     bool always = false;
     bool everyFrame =
@@ -97,6 +111,13 @@ struct MemoryReport {
     std::uint64_t persistent = 0;
 };
 
+// What previews cost. The plan's other figures are those without them.
+struct PreviewCost {
+    std::uint64_t memory = 0;         // bytes more
+    std::vector<std::string> altered; // "pass.step" whose program or bindings are others for a preview's sake
+    std::vector<LeftOut> leftOut;     // with the previews
+};
+
 struct Plan {
     std::vector<PlanResource> resources;
     std::vector<PlanObject> objects;
@@ -106,6 +127,7 @@ struct Plan {
     std::vector<PlanOutput> outputs;
     std::vector<LeftOut> leftOut;
     MemoryReport memory;
+    PreviewCost previews;
     Extent size;
 };
 
@@ -115,7 +137,8 @@ struct CompileOptions {
     // constants as images.
     bool keepAll = false;
     bool shareMemory = true;
-    std::vector<PortRef> previews; // further ports that somebody wants to see
+    std::vector<PortRef> previews;            // further ports that somebody wants to see
+    std::map<std::string, Growth> grown = {}; // of each pass: what its outputs needed after an overflow
 };
 
 // Pass objects by name, with the graph's properties set. Reuse them over compilations to keep host-side

@@ -1,26 +1,11 @@
 // Compiler stage: shader variants, and the names by which resources are bound in them.
+#include "graph/glsl_names.h"
 #include "graph/network.h"
 #include <algorithm>
-#include <cctype>
 #include <fmt/format.h>
 
 namespace kestrel::compiler {
 namespace {
-
-// "ray_buffer" -> "RayBuffer"
-std::string blockName(const std::string& port) {
-    std::string name;
-    bool capital = true;
-    for (const char letter : port) {
-        if (letter == '_') {
-            capital = true;
-            continue;
-        }
-        name += capital ? static_cast<char>(std::toupper(static_cast<unsigned char>(letter))) : letter;
-        capital = false;
-    }
-    return name;
-}
 
 bool isTexel(Access access) { return access == Access::Fetch || access == Access::Image; }
 
@@ -46,8 +31,7 @@ void bindUses(const Network& network, int node, const std::vector<Use>& uses, co
         if (!source) continue;
         const Output* output = knownOutput(network.at(source->node), source->port);
         const ResourceKind kind = output == nullptr ? ResourceKind::Texture2D : output->desc.kind;
-        bound.push_back({glslName(prefix, use, kind, readBeside(uses, use)),
-                         prefix.empty() ? use.port : std::string(), *source, use});
+        bound.push_back({glslName(prefix, use, kind, readBeside(uses, use)), prefix, *source, use});
     }
 }
 
@@ -95,27 +79,31 @@ ModuleInstance instanceOf(const Network& network, const Provider& provider, Bits
     return instance;
 }
 
-void addViews(const Network& network, int node, const std::string& prefix, std::vector<PlanView>& views) {
+// The views that a program of this node can ask for under a path: of what it binds, and of its other ports.
+void addViews(const Network& network, int node, const std::string& path, std::vector<BoundView>& views) {
     const Node& at = network.at(node);
     for (const PortInfo& port : at.type->ports) {
-        if (port.kind != PortKind::Texture) continue;
+        if (isModule(port.kind)) continue;
         const Desc* desc = nullptr;
         if (port.direction == PortDirection::Input) {
             if (at.inputs.connected(port.name)) desc = &at.inputs[port.name].desc;
         } else if (const Output* output = findOutput(at.real, port.name)) {
             desc = &output->desc;
         }
-        if (desc != nullptr)
-            views.push_back({prefix + blockName(port.name) + "View", desc->view, desc->extent});
+        if (desc == nullptr) continue;
+        const auto source = sourceOf(network, node, port.name);
+        for (const bool previous : {false, true})
+            views.push_back(
+                {viewBlockName(path, port.name, previous), previous, source, desc->view, desc->extent});
     }
 }
 
 void addViewsOfModules(const Network& network, int node, const std::vector<ModuleUse>& modules,
-                       const std::string& prefix, std::vector<PlanView>& views) {
+                       const std::string& path, std::vector<BoundView>& views) {
     for (const ModuleUse& use : modules) {
         const auto provider = providerOf(network, node, use.port);
         if (!provider) continue;
-        const std::string inner = prefix + use.port + "_";
+        const std::string inner = path + use.port + "_";
         addViews(network, provider->node, inner, views);
         addViewsOfModules(network, provider->node, provider->module->modules, inner, views);
     }
@@ -135,25 +123,6 @@ void addProducers(const Network& network, int node, const std::string& input, st
 
 } // namespace
 
-std::string glslName(const std::string& prefix, const Use& use, ResourceKind kind, bool readBeside) {
-    switch (use.access) {
-    case Access::Fetch:
-    case Access::Image:
-        return prefix + (use.previous ? "previous_" : "") + use.port + (readBeside ? "_out" : "");
-    case Access::Storage:
-    case Access::Uniform:
-        return prefix + (use.previous ? "Previous" : "") + blockName(use.port);
-    case Access::Attachment:
-        return kind == ResourceKind::Buffer ? std::string() : "out_" + use.port;
-    case Access::Vertex:
-    case Access::Indirect:
-    case Access::Copy:
-    case Access::Host:
-        break;
-    }
-    return {};
-}
-
 std::vector<BoundUse> boundUses(const Network& network, int node, const Step& step) {
     std::vector<BoundUse> bound;
     bindUses(network, node, step.uses, "", bound);
@@ -169,8 +138,8 @@ ProgramRequest programOf(const Network& network, int node, const Step& step) {
     return request;
 }
 
-std::vector<PlanView> viewsOf(const Network& network, int node, const Step& step) {
-    std::vector<PlanView> views;
+std::vector<BoundView> viewsOf(const Network& network, int node, const Step& step) {
+    std::vector<BoundView> views;
     addViews(network, node, "", views);
     addViewsOfModules(network, node, step.modules, "", views);
     return views;

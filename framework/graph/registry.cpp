@@ -3,6 +3,7 @@
 #include "graph/value_text.h"
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
@@ -117,12 +118,10 @@ std::optional<std::string> valueMistake(const PropertyInfo& property, const Valu
     return {};
 }
 
-void Registry::add(PassType type) {
-    std::vector<Problem> problems;
+void Registry::check(const PassType& type, std::vector<Problem> problems) {
     const auto note = [&](const std::string& message) {
         problems.push_back({{}, fmt::format("pass type '{}' of {}: {}", type.name, origin(type), message)});
     };
-    if (const PassType* taken = find(type.name)) note(fmt::format("the name is taken by {}", origin(*taken)));
     std::set<std::string> names;
     const auto noteName = [&](const std::string& name, const char* what) {
         if (!isGraphName(name))
@@ -138,6 +137,27 @@ void Registry::add(PassType type) {
             note(fmt::format("the default of '{}' {}", property.name, *mistake));
     }
     if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+void Registry::add(PassType type) {
+    std::vector<Problem> problems;
+    if (const PassType* taken = find(type.name))
+        problems.push_back({{},
+                            fmt::format("pass type '{}' of {}: the name is taken by {}", type.name,
+                                        origin(type), origin(*taken))});
+    check(type, std::move(problems));
+    insert(std::move(type));
+}
+
+void Registry::replace(PassType type) {
+    check(type, {});
+    std::erase_if(types_, [&](const PassType& old) { return old.name == type.name; });
+    insert(std::move(type));
+}
+
+void Registry::insert(PassType type) {
+    static std::atomic<std::uint64_t> registrations{0};
+    type.instance = ++registrations;
     const auto place =
         std::lower_bound(types_.begin(), types_.end(), type.name,
                          [](const PassType& one, const std::string& name) { return one.name < name; });

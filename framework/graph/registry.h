@@ -1,6 +1,7 @@
 // The table of pass types: one place from which loading, saving, --set, sweep axes, editor, schema and
 // documentation take ports and properties.
 #pragma once
+#include "core/error.h"
 #include "graph/pass.h"
 #include <functional>
 #include <limits>
@@ -45,6 +46,9 @@ struct PassType {
     std::vector<PropertyInfo> properties;
     std::function<std::unique_ptr<Pass>()> make;
     std::string plugin; // the library that it came from; set by the loader
+    // Tells one registration from every other, also of the same name: a pass object belongs to that which
+    // made it. Set by the registry.
+    std::uint64_t instance = 0;
 
     [[nodiscard]] const PortInfo* port(std::string_view portName) const;
     [[nodiscard]] const PropertyInfo* property(std::string_view propertyName) const;
@@ -65,6 +69,10 @@ public:
     // Throws InputError if the name is taken (says by which plugin), a port or property name occurs twice or
     // is no such name, or a default is not a legal value of its property.
     void add(PassType type);
+    // Puts a type in the place of the one of its name, or adds it: its plugin was built anew. Throws as add()
+    // does but for the name. Pass objects of the type before stay as they are; whoever compiles a graph makes
+    // new ones.
+    void replace(PassType type);
     [[nodiscard]] const PassType* find(std::string_view name) const;
     [[nodiscard]] const std::vector<PassType>& types() const { return types_; } // sorted by name
     [[nodiscard]] std::vector<std::string> names() const;
@@ -72,6 +80,9 @@ public:
     std::vector<std::filesystem::path> shaderFolders;
 
 private:
+    // Throws InputError with `problems` and what else is wrong with the type, if there is anything.
+    static void check(const PassType& type, std::vector<Problem> problems);
+    void insert(PassType type);
     std::vector<PassType> types_;
 };
 

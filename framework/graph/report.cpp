@@ -57,6 +57,7 @@ Out stepJson(const PlanStep& step) {
     Out bindings = Out::array();
     for (const PlanBinding& binding : step.bindings)
         bindings.push_back({{"name", binding.name},
+                            {"module", binding.path},
                             {"port", binding.port},
                             {"resource", binding.resource},
                             {"access", accessName(binding.access)},

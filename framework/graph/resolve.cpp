@@ -84,6 +84,8 @@ Network resolve(const Graph& graph, const Registry& registry, const PassSet& pas
         const auto instance = passes.find(pass.name);
         KESTREL_CHECK(instance != passes.end() && instance->second != nullptr);
         node.instance = instance->second;
+        if (const auto grown = options.grown.find(pass.name); grown != options.grown.end())
+            node.grown = &grown->second;
         index[pass.name] = static_cast<int>(network.nodes.size());
         network.nodes.push_back(std::move(node));
     }

@@ -110,10 +110,17 @@ private:
                 resource.history = history_.contains(source);
                 resource.transient = network_.at(node).everyFrame() && !resource.history && !output.keeps &&
                                      !resource.constant && !wanted_.contains(source) &&
-                                     !sometimes_.contains(source);
+                                     !sometimes_.contains(source) && !isCounter(node, output.port);
                 resources_[source] = static_cast<int>(plan_.resources.size());
                 plan_.resources.push_back(std::move(resource));
             }
+    }
+
+    // Read at the end of the frame.
+    [[nodiscard]] bool isCounter(int node, const std::string& port) const {
+        const std::vector<Output>& outputs = network_.at(node).real.outputs;
+        return std::any_of(outputs.begin(), outputs.end(),
+                           [&](const Output& output) { return output.counter == port; });
     }
 
     void fillPass(int node) {
@@ -123,6 +130,13 @@ private:
         for (size_t i = 0; i < from.real.steps.size(); ++i)
             addStep(node, from.real.steps[i], bound_[node][i]);
         pass.stepCount = static_cast<int>(plan_.steps.size()) - pass.firstStep;
+        pass.repeatable = !from.real.always;
+        for (const Output& output : from.real.outputs) {
+            if (output.keeps || !output.updates.empty()) pass.repeatable = false;
+            if (output.counter.empty()) continue;
+            const int counter = resourceOf({node, output.counter});
+            if (counter >= 0) pass.counters.push_back({output.port, counter, output.capacity});
+        }
         if (pass.stepCount > 0)
             for (const Output& output : from.real.outputs)
                 if (const auto old = copiedFrom(node, output))
@@ -136,11 +150,14 @@ private:
         PlanStep planned;
         planned.pass = passOf_.at(node);
         planned.step = step;
-        planned.views = viewsOf(network_, node, step);
+        for (const BoundView& view : viewsOf(network_, node, step))
+            planned.views.push_back({view.name, view.view, view.extent,
+                                     view.source ? resourceOf(*view.source) : -1, view.previous});
         for (const BoundUse& use : bound) {
             PlanBinding binding;
             binding.name = use.name;
-            binding.port = use.port;
+            binding.path = use.path;
+            binding.port = use.use.port;
             binding.resource = resourceOf(use.source);
             binding.access = use.use.access;
             binding.write = use.use.write;

@@ -14,7 +14,12 @@ Spread spreadOf(std::vector<double> series) {
 
 void Profile::add(const FrameRecord& frame) {
     std::map<std::string, double> ofPass;
+    double previews = 0;
     for (const StepSample& sample : frame.samples) {
+        if (sample.preview) {
+            previews += sample.ms;
+            continue;
+        }
         ofPass[sample.pass] += sample.ms;
         groups_[sample.group][frames_.size()] += sample.ms;
         const bool known = std::ranges::any_of(
@@ -24,7 +29,8 @@ void Profile::add(const FrameRecord& frame) {
     for (PassSeries& series : passes_)
         if (const auto found = ofPass.find(series.name); found != ofPass.end())
             series.ms.push_back(found->second);
-    frames_.push_back(frame.ms);
+    frames_.push_back(frame.ms - previews);
+    previews_.push_back(previews);
 }
 
 std::vector<Profile::PassTime> Profile::passes() const {

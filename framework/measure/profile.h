@@ -31,7 +31,10 @@ public:
     // What a frame costs by what its steps count as ("generation", "tracing", …), over all frames; a frame in
     // which nothing of a group ran counts as zero.
     [[nodiscard]] std::map<std::string, Spread> groups() const;
+    // The wall clock of a frame, less what ran for previews alone.
     [[nodiscard]] Spread frame() const { return spreadOf(frames_); }
+    // What ran for previews alone, a frame; all zero if nothing did.
+    [[nodiscard]] Spread previews() const { return spreadOf(previews_); }
     [[nodiscard]] int frameCount() const { return static_cast<int>(frames_.size()); }
 
 private:
@@ -41,7 +44,7 @@ private:
     };
     std::vector<PassSeries> passes_;
     std::map<std::string, std::map<size_t, double>> groups_; // group -> frame -> ms
-    std::vector<double> frames_;
+    std::vector<double> frames_, previews_;
 };
 
 } // namespace kestrel

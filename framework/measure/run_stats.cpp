@@ -31,6 +31,8 @@ RunStats gatherStats(Renderer& renderer, const Profile& profile, const std::stri
     stats.frameMs = profile.frame();
     stats.leftOut = renderer.plan().leftOut;
     stats.memory = renderer.plan().memory;
+    stats.previewsMs = profile.previews();
+    stats.previews = renderer.plan().previews;
     stats.values = renderer.last().values;
     return stats;
 }
@@ -63,6 +65,10 @@ std::string statsJson(const RunStats& stats) {
          {{"transient", stats.memory.transient},
           {"unshared", stats.memory.unshared},
           {"persistent", stats.memory.persistent}}},
+        {"previews",
+         {{"ms", spreadJson(stats.previewsMs)},
+          {"memory", stats.previews.memory},
+          {"altered_steps", stats.previews.altered}}},
         {"values", stats.values},
     };
     return json.dump(2, ' ', false, OutJson::error_handler_t::replace) + "\n";

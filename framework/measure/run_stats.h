@@ -19,6 +19,10 @@ struct RunStats {
     Spread frameMs;
     std::vector<LeftOut> leftOut;
     MemoryReport memory;
+    // What previews cost besides: they are in none of the figures above, but that steps which they alter take
+    // longer.
+    Spread previewsMs;
+    PreviewCost previews;
     std::map<std::string, std::map<std::string, double>> values; // what passes reported in the last frame
 };
 

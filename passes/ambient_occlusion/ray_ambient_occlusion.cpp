@@ -51,9 +51,7 @@ Declaration RayAmbientOcclusion::declare(const World& world, const Inputs& input
     if (weighted && !snaps)
         declaration.leftOut.push_back({"weight", "the tracer traces the directions that were asked for"});
 
-    Step step{.name = {},
-              .shaders = {"ambient_occlusion/ray_ambient_occlusion.comp"},
-              .defines = {},
+    Step step{.shaders = {"ambient_occlusion/ray_ambient_occlusion.comp"},
               .uses = {{.port = "depth", .access = Access::Fetch},
                        {.port = "normal", .access = Access::Image},
                        {.port = "visibility", .access = Access::Image, .write = true}},

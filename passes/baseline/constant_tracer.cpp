@@ -15,11 +15,7 @@ Declaration ConstantTracer::declare(const World& world, const Inputs&, const Dem
     Declaration declaration;
     declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Approximate)}};
     if (!demand.reads("tracer")) return declaration;
-    Module tracer{.port = "tracer",
-                  .shader = "baseline/constant_tracer.glsl",
-                  .defines = {},
-                  .uses = {},
-                  .modules = {}};
+    Module tracer{.port = "tracer", .shader = "baseline/constant_tracer.glsl"};
     const float length = distance * world.facts.sphere.radius;
     // A literal: nothing is read, and the compiler drops what a ray without a hit does not need.
     if (length > 0) tracer.defines.emplace("DISTANCE", fmt::format("{:#.9g}", length));

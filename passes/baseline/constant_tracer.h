@@ -14,7 +14,6 @@ public:
                                       const Demand& demand) const override;
 
     // Nothing is made, so there is no step.
-    void execute(const Step&, Commands&) override {}
 
     float distance = 0.25f;
 };

@@ -48,18 +48,14 @@ Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& de
                                     {.port = "triangles", .access = Access::Image}};
     const auto provide = [&](const char* port, const char* define, Bits given) {
         declaration.outputs.push_back({.port = port, .desc = Desc::module(given)});
-        Module module{
-            .port = port, .shader = "bvh/bvh.glsl", .defines = {{define, "1"}}, .uses = reads, .modules = {}};
+        Module module{.port = port, .shader = "bvh/bvh.glsl", .defines = {{define, "1"}}, .uses = reads};
         declaration.modules.push_back(std::move(module));
     };
     if (demand.reads("tracer")) provide("tracer", "PROVIDES_TRACER", provides::Surface);
     if (demand.reads("hits")) provide("hits", "PROVIDES_HITS", provides::Surface);
     declaration.steps.push_back({.name = "build",
-                                 .shaders = {},
-                                 .defines = {},
                                  .uses = {{.port = "nodes", .access = Access::Copy, .write = true},
                                           {.port = "triangles", .access = Access::Copy, .write = true}},
-                                 .modules = {},
                                  .group = "generation"});
     if (!world.facts.hasMasked)
         declaration.leftOut.push_back({"alpha test at hits", "no material is masked or blended"});

@@ -71,6 +71,7 @@ Declaration DebugView::declareTexture(const Desc& desc) const {
         {.port = "image", .desc = Desc::texture2D(Format::RGBA8, extent, desc.view)});
     const FormatInfo& format = formatInfo(desc.format);
     Step step{.name = "show",
+              .run = {&DebugView::showTexture, desc.kind},
               .shaders = {"display/debug_view.comp"},
               .defines = {{"SAMPLER", std::string(format.integer ? (format.isSigned ? "i" : "u") : "") +
                                           samplerOf(desc)},
@@ -78,7 +79,6 @@ Declaration DebugView::declareTexture(const Desc& desc) const {
                           {"CHANNELS", std::to_string(format.channels)}},
               .uses = {{.port = "source", .access = Access::Fetch},
                        {.port = "image", .access = Access::Image, .write = true}},
-              .modules = {},
               .group = "display"};
     if (desc.kind == ResourceKind::Texture2DArray) step.defines.emplace("LAYERED", "1");
     if (desc.kind == ResourceKind::Texture3D) step.defines.emplace("SOLID", "1");
@@ -95,26 +95,26 @@ Declaration DebugView::declareOccupancy() const {
     // Cells are shown on a fixed canvas: the map's resolution is in its grid, which only the shader knows.
     declaration.outputs.push_back({.port = "image", .desc = Desc::texture2D(Format::RGBA8, {512, 512, 1})});
     declaration.steps.push_back({.name = "slice",
+                                 .run = &DebugView::showOccupancy,
                                  .shaders = {"display/occupancy_slice.comp"},
-                                 .defines = {},
                                  .uses = {{.port = "occupancy", .access = Access::Image},
                                           {.port = "grid", .access = Access::Uniform},
                                           {.port = "image", .access = Access::Image, .write = true}},
-                                 .modules = {},
                                  .group = "display"});
     declaration.depends = Causes::Properties;
     return declaration;
 }
 
-void DebugView::execute(const Step& step, Commands& commands) {
-    if (step.name == "slice") {
-        commands.set("slice", slice);
-    } else {
-        commands.set("range", range);
-        commands.set("mip", mip);
-        if (step.defines.contains("LAYERED")) commands.set("layer", layer);
-        if (step.defines.contains("SOLID")) commands.set("slice", slice);
-    }
+void DebugView::showTexture(Commands& commands, ResourceKind kind) const {
+    commands.set("range", range);
+    commands.set("mip", mip);
+    if (kind == ResourceKind::Texture2DArray) commands.set("layer", layer);
+    if (kind == ResourceKind::Texture3D) commands.set("slice", slice);
+    commands.dispatchOver(commands.desc("image").extent);
+}
+
+void DebugView::showOccupancy(Commands& commands) const {
+    commands.set("slice", slice);
     commands.dispatchOver(commands.desc("image").extent);
 }
 

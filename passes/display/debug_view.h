@@ -11,7 +11,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     Show show = Show::Colour;
     glm::vec2 range{0, 1};
@@ -22,6 +21,8 @@ public:
 private:
     [[nodiscard]] Declaration declareTexture(const Desc& desc) const;
     [[nodiscard]] Declaration declareOccupancy() const;
+    void showTexture(Commands& commands, ResourceKind kind) const;
+    void showOccupancy(Commands& commands) const;
 };
 
 } // namespace kestrel

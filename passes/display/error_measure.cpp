@@ -49,12 +49,9 @@ Declaration ErrorMeasure::declare(const World&, const Inputs& inputs, const Dema
     declaration.outputs.back().clear = glm::vec4(0);
     declaration.outputs.back().keeps = true;
     Step step{.name = "measure",
-              .shaders = {},
-              .defines = {},
               .uses = {{.port = "reference", .access = Access::Host},
                        {.port = "test", .access = Access::Host},
                        {.port = "heat_map", .access = Access::Copy, .write = true}},
-              .modules = {},
               .group = "measuring"};
     if (inputs.connected("mask")) step.uses.push_back({.port = "mask", .access = Access::Host});
     declaration.steps.push_back(std::move(step));

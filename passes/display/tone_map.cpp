@@ -56,12 +56,12 @@ Declaration ToneMap::declare(const World&, const Inputs& inputs, const Demand&) 
     declaration.outputs.push_back(
         {.port = "image", .desc = Desc::texture2D(Format::RGBA8, colour.extent, colour.view)});
     Step step{.name = "map",
+              .run = &ToneMap::map,
               .shaders = {"display/tone_map.comp"},
               .defines = {{"COLOUR_FORMAT", std::string(format.name)},
                           {"OPERATOR", std::to_string(static_cast<int>(curve))}},
               .uses = {{.port = "colour", .access = Access::Image},
                        {.port = "image", .access = Access::Image, .write = true}},
-              .modules = {},
               .group = "display"};
     if (format.channels == 1) step.defines.emplace("GREY", "1");
     if (encode) step.defines.emplace("ENCODE", "1");
@@ -83,26 +83,23 @@ void ToneMap::declareMetering(Declaration& declaration, const Desc& colour) cons
     declaration.outputs.push_back({.port = "metered", .desc = Desc::buffer(sizeof(Metered)), .keeps = true});
     Step meter{
         .name = "meter",
+        .run = &ToneMap::meter,
         .shaders = {"display/tone_map_meter.comp"},
         .defines = {{"COLOUR_FORMAT", std::string(format.name)}, {"METER_ROWS", std::to_string(meterRows)}},
         .uses = {{.port = "colour", .access = Access::Image},
                  {.port = "sums", .access = Access::Storage, .write = true}},
-        .modules = {},
         .group = "display"};
     if (format.channels == 1) meter.defines.emplace("GREY", "1");
     declaration.steps.push_back(std::move(meter));
     declaration.steps.push_back({.name = "adapt",
+                                 .run = &ToneMap::adapt,
                                  .shaders = {"display/tone_map_adapt.comp"},
-                                 .defines = {},
                                  .uses = {{.port = "sums", .access = Access::Storage},
                                           {.port = "metered", .access = Access::Storage, .write = true}},
-                                 .modules = {},
                                  .group = "display"});
     declaration.steps.push_back({.name = "report",
-                                 .shaders = {},
-                                 .defines = {},
+                                 .run = &ToneMap::report,
                                  .uses = {{.port = "metered", .access = Access::Host}},
-                                 .modules = {},
                                  .group = "display"});
     declaration.depends = newStart;
     declaration.always = adaptation > 0; // the exposure goes on where the picture stands still
@@ -117,23 +114,23 @@ void ToneMap::adapt(Commands& commands) const {
     commands.dispatch(1);
 }
 
-void ToneMap::execute(const Step& step, Commands& commands) {
+void ToneMap::meter(Commands& commands) const {
     const Extent& extent = commands.desc("image").extent;
-    if (step.name == "meter")
-        commands.dispatchOver(extent.width, (extent.height + meterRows - 1) / meterRows);
-    else if (step.name == "adapt")
-        adapt(commands);
-    else if (step.name == "report") {
-        Metered metered{};
-        const std::vector<std::byte> bytes = commands.download("metered");
-        KESTREL_CHECK_EQ(bytes.size(), sizeof(metered));
-        std::memcpy(&metered, bytes.data(), sizeof(metered));
-        commands.report("exposure", std::log2(double{metered.factor}));
-        commands.report("pixels metered", metered.pixels);
-    } else {
-        if (!autoExposure) commands.set("exposure", std::exp2(exposure));
-        commands.dispatchOver(extent);
-    }
+    commands.dispatchOver(extent.width, (extent.height + meterRows - 1) / meterRows);
+}
+
+void ToneMap::report(Commands& commands) const {
+    Metered metered{};
+    const std::vector<std::byte> bytes = commands.download("metered");
+    KESTREL_CHECK_EQ(bytes.size(), sizeof(metered));
+    std::memcpy(&metered, bytes.data(), sizeof(metered));
+    commands.report("exposure", std::log2(double{metered.factor}));
+    commands.report("pixels metered", metered.pixels);
+}
+
+void ToneMap::map(Commands& commands) const {
+    if (!autoExposure) commands.set("exposure", std::exp2(exposure));
+    commands.dispatchOver(commands.desc("image").extent);
 }
 
 } // namespace kestrel

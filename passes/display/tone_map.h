@@ -11,7 +11,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     Operator curve = Operator::Aces;
     float exposure = 0;
@@ -22,7 +21,10 @@ public:
 
 private:
     void declareMetering(Declaration& declaration, const Desc& colour) const;
+    void meter(Commands& commands) const;
     void adapt(Commands& commands) const;
+    void report(Commands& commands) const;
+    void map(Commands& commands) const;
 };
 
 } // namespace kestrel

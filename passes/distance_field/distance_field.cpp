@@ -24,12 +24,13 @@ Desc volume(Format format, int resolution, int mips = 1) {
 }
 
 // A step that makes something of the field from the map or from what earlier steps made of it.
-Step generation(std::string name, std::string shader, int resolution) {
+// A step over `cells` invocations along x, y and z.
+Step generation(std::string name, std::string shader, int resolution, glm::ivec3 cells) {
     return {.name = std::move(name),
+            .run = [cells = glm::uvec3(cells)](
+                       Commands& commands) { commands.dispatchOver(cells.x, cells.y, cells.z); },
             .shaders = {std::move(shader)},
             .defines = {{"RESOLUTION", std::to_string(resolution)}},
-            .uses = {},
-            .modules = {},
             .group = "generation"};
 }
 
@@ -86,11 +87,7 @@ Declaration DistanceField::declare(const World& world, const Inputs& inputs, con
     declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Approximate)}};
     if (!demand.reads("tracer")) return declaration;
 
-    Module tracer{.port = "tracer",
-                  .shader = "distance_field/distance_field.glsl",
-                  .defines = {},
-                  .uses = {},
-                  .modules = {}};
+    Module tracer{.port = "tracer", .shader = "distance_field/distance_field.glsl"};
     if (inputs["occupancy"].constant == glm::vec4(0)) {
         tracer.defines.emplace("EMPTY", "1");
         declaration.leftOut.push_back({"distance field", "the occupancy map is empty"});
@@ -121,16 +118,15 @@ Declaration DistanceField::declare(const World& world, const Inputs& inputs, con
         declaration.steps = exactSteps(*resolution, access);
     }
     for (int mip = 1; mip < mips; ++mip) {
-        Step step = generation(fmt::format("level{}", mip), "distance_field/coarser.comp", *resolution);
+        Step step = generation(fmt::format("level{}", mip), "distance_field/coarser.comp", *resolution,
+                               glm::ivec3(*resolution >> mip));
         step.uses = {{.port = "field", .access = Access::Image, .mip = mip - 1},
                      {.port = "field", .access = Access::Image, .write = true, .mip = mip}};
         declaration.steps.push_back(std::move(step));
     }
     declaration.steps.push_back({.name = "settings",
-                                 .shaders = {},
-                                 .defines = {},
+                                 .run = &DistanceField::uploadSettings,
                                  .uses = {{.port = "settings", .access = Access::Copy, .write = true}},
-                                 .modules = {},
                                  .group = "generation"});
     declaration.depends = Causes::Properties;
     return declaration;
@@ -140,7 +136,8 @@ std::vector<Step> DistanceField::floodSteps(int resolution, Access base) const {
     std::vector<Step> steps;
     std::string from, to = "seeds_a";
     for (int stride = resolution / 2; stride >= 1; stride /= 2) {
-        Step step = generation(fmt::format("flood{}", stride), "distance_field/jump_flood.comp", resolution);
+        Step step = generation(fmt::format("flood{}", stride), "distance_field/jump_flood.comp", resolution,
+                               glm::ivec3(resolution));
         step.defines.emplace("STRIDE", std::to_string(stride));
         if (from.empty()) {
             step.defines.emplace("FIRST", "1");
@@ -164,23 +161,16 @@ std::vector<Step> DistanceField::floodSteps(int resolution, Access base) const {
 }
 
 std::vector<Step> DistanceField::exactSteps(int resolution, Access base) const {
-    Step columns = generation("along_y", "distance_field/envelope.comp", resolution);
+    Step columns =
+        generation("along_y", "distance_field/envelope.comp", resolution, {resolution, resolution, 1});
     columns.defines.emplace("ALONG_Y", "1");
     readMap(columns, base);
     columns.uses.push_back({.port = "planes", .access = Access::Image, .write = true});
-    Step rows = generation("along_x", "distance_field/envelope.comp", resolution);
+    Step rows =
+        generation("along_x", "distance_field/envelope.comp", resolution, {resolution, resolution, 1});
     rows.uses = {{.port = "planes", .access = Access::Image},
                  {.port = "field", .access = Access::Image, .write = true, .mip = 0}};
     return {columns, rows};
-}
-
-void DistanceField::execute(const Step& step, Commands& commands) {
-    if (step.name == "settings") return uploadSettings(commands);
-    const auto n = commands.desc("field").extent.width;
-    if (step.name == "along_x" || step.name == "along_y") return commands.dispatchOver(n, n);
-    if (!step.name.starts_with("level")) return commands.dispatchOver(n, n, n);
-    const auto half = n >> step.uses.back().mip;
-    commands.dispatchOver(half, half, half);
 }
 
 void DistanceField::uploadSettings(Commands& commands) const {

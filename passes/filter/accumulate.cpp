@@ -55,7 +55,6 @@ Declaration Accumulate::declare(const World&, const Inputs& inputs, const Demand
                           {"SIGNAL_FORMAT", std::string(format.name)}},
               .uses = {{.port = "signal", .access = Access::Image},
                        {.port = "result", .access = Access::Image, .write = true}},
-              .modules = {},
               .group = "accumulation"};
     if (weighted) {
         if (inputs["weight"].desc.extent != signal.desc.extent)

@@ -55,7 +55,6 @@ Declaration BilateralBlur::declare(const World&, const Inputs& inputs, const Dem
             .uses = {{.port = from, .access = Access::Image},
                      {.port = "view_depth", .access = Access::Image},
                      {.port = to, .access = Access::Image, .write = true}},
-            .modules = {},
             .group = "filter"};
         if (slope) step.defines.emplace("SLOPE", "1");
         declaration.steps.push_back(std::move(step));

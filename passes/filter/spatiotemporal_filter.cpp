@@ -207,6 +207,7 @@ void SpatiotemporalFilter::leaveOut(Declaration& declaration, const Inputs& inpu
 
 Step SpatiotemporalFilter::temporalStep(const Inputs& inputs, const Choices& choices) const {
     Step step{.name = "accumulate",
+              .run = &SpatiotemporalFilter::accumulate,
               .shaders = {"filter/temporal.comp"},
               .defines = choices.defines(),
               .uses = {{.port = "signal", .access = Access::Image},
@@ -215,7 +216,6 @@ Step SpatiotemporalFilter::temporalStep(const Inputs& inputs, const Choices& cho
                        {.port = choices.mean, .access = Access::Image, .write = true},
                        {.port = "moments", .access = Access::Storage, .write = true},
                        {.port = "geometry", .access = Access::Storage, .write = true}},
-              .modules = {},
               .group = "filter"};
     step.defines["SIGNAL_FORMAT"] = glslName(inputs["signal"].desc.format);
     if (choices.past) {
@@ -250,6 +250,7 @@ Step SpatiotemporalFilter::temporalStep(const Inputs& inputs, const Choices& cho
 
 Step SpatiotemporalFilter::gradientStep(const Inputs& inputs, const Choices& choices) const {
     Step step{.name = "find_changes",
+              .run = &SpatiotemporalFilter::findChanges,
               .shaders = {"filter/gradient.comp"},
               .defines = choices.defines(),
               .uses = {{.port = "signal", .access = Access::Image},
@@ -259,7 +260,6 @@ Step SpatiotemporalFilter::gradientStep(const Inputs& inputs, const Choices& cho
                        choices.reads("geometry", true),
                        {.port = "change", .access = Access::Image, .previous = true},
                        {.port = "change", .access = Access::Image, .write = true}},
-              .modules = {},
               .group = "filter"};
     step.defines["SIGNAL_FORMAT"] = glslName(inputs["signal"].desc.format);
     step.defines["PREVIOUS_HISTORY"] = "previous_" + choices.kept;
@@ -275,12 +275,12 @@ Step SpatiotemporalFilter::gradientStep(const Inputs& inputs, const Choices& cho
 
 Step SpatiotemporalFilter::varianceStep(const Choices& choices) const {
     Step step{.name = "estimate_variance",
+              .run = &SpatiotemporalFilter::estimateVariance,
               .shaders = {"filter/variance.comp"},
               .defines = choices.defines(),
               .uses = {{.port = choices.mean, .access = Access::Image},
                        choices.reads("moments"),
                        choices.reads("geometry")},
-              .modules = {},
               .group = "filter"};
     if (choices.iterations > 0) {
         step.defines["TARGET"] = filteredBlock(0);
@@ -298,10 +298,10 @@ Step SpatiotemporalFilter::iterationStep(int iteration, const Choices& choices) 
     const bool isLast = iteration + 1 == choices.iterations;
     const bool isHistory = iteration == 0 && choices.filteredHistory;
     Step step{.name = fmt::format("smooth{}", iteration),
+              .run = {&SpatiotemporalFilter::smooth, iteration},
               .shaders = {"filter/atrous.comp"},
               .defines = choices.defines(),
               .uses = {choices.reads(filteredPort(iteration)), choices.reads("geometry")},
-              .modules = {},
               .group = "filter"};
     step.defines["SOURCE"] = filteredPort(iteration);
     step.defines["SOURCE_BLOCK"] = filteredBlock(iteration);
@@ -326,25 +326,36 @@ Step SpatiotemporalFilter::iterationStep(int iteration, const Choices& choices) 
     return step;
 }
 
-void SpatiotemporalFilter::execute(const Step& step, Commands& commands) {
-    if (step.name == "accumulate" || step.name == "find_changes") {
-        const bool restart = any(commands.causes() & (Causes::Cut | Causes::Size | Causes::Properties));
-        commands.set("restart", restart ? 1 : 0);
-        commands.set("depthTolerance", depthTolerance);
-        commands.set("normalTolerance", std::cos(normalTolerance * std::numbers::pi_v<float> / 180.0f));
-    }
-    if (step.name == "accumulate") {
-        commands.set("frames", static_cast<float>(history));
-        commands.set("clampDeviations", clampDeviations);
-    }
-    if (step.name == "estimate_variance") commands.set("sigmaDepth", sigmaDepth);
-    if (step.name.starts_with("smooth")) {
-        commands.set("sigmaDepth", sigmaDepth);
-        commands.set("sigmaNormal", sigmaNormal);
-        commands.set("sigmaLuminance", sigmaLuminance);
-        commands.set("stride", 1 << std::stoi(step.name.substr(6)));
-    }
-    commands.dispatchOver(commands.desc(step.name == "find_changes" ? "change" : "result").extent);
+void SpatiotemporalFilter::setTolerances(Commands& commands) const {
+    const bool restart = any(commands.causes() & (Causes::Cut | Causes::Size | Causes::Properties));
+    commands.set("restart", restart ? 1 : 0);
+    commands.set("depthTolerance", depthTolerance);
+    commands.set("normalTolerance", std::cos(normalTolerance * std::numbers::pi_v<float> / 180.0f));
+}
+
+void SpatiotemporalFilter::findChanges(Commands& commands) const {
+    setTolerances(commands);
+    commands.dispatchOver(commands.desc("change").extent);
+}
+
+void SpatiotemporalFilter::accumulate(Commands& commands) const {
+    setTolerances(commands);
+    commands.set("frames", static_cast<float>(history));
+    commands.set("clampDeviations", clampDeviations);
+    commands.dispatchOver(commands.desc("result").extent);
+}
+
+void SpatiotemporalFilter::estimateVariance(Commands& commands) const {
+    commands.set("sigmaDepth", sigmaDepth);
+    commands.dispatchOver(commands.desc("result").extent);
+}
+
+void SpatiotemporalFilter::smooth(Commands& commands, int iteration) const {
+    commands.set("sigmaDepth", sigmaDepth);
+    commands.set("sigmaNormal", sigmaNormal);
+    commands.set("sigmaLuminance", sigmaLuminance);
+    commands.set("stride", 1 << iteration);
+    commands.dispatchOver(commands.desc("result").extent);
 }
 
 } // namespace kestrel

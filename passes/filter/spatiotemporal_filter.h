@@ -10,7 +10,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     int history = 10;
     // The paper has 5 iterations of 5 x 5 taps and an exponent of 128, for full HD; these are better and
@@ -33,6 +32,11 @@ private:
     [[nodiscard]] Step gradientStep(const Inputs& inputs, const Choices& choices) const;
     [[nodiscard]] Step varianceStep(const Choices& choices) const;
     [[nodiscard]] Step iterationStep(int iteration, const Choices& choices) const;
+    void setTolerances(Commands& commands) const;
+    void findChanges(Commands& commands) const;
+    void accumulate(Commands& commands) const;
+    void estimateVariance(Commands& commands) const;
+    void smooth(Commands& commands, int iteration) const;
     static void leaveOut(Declaration& declaration, const Inputs& inputs, const Choices& choices);
 };
 

@@ -70,7 +70,6 @@ Declaration TemporalAa::declare(const World&, const Inputs& inputs, const Demand
                        {.port = "result", .access = Access::Image, .write = true},
                        {.port = "past", .access = Access::Image, .previous = true},
                        {.port = "past", .access = Access::Image, .write = true}},
-              .modules = {},
               .group = "filter"};
     if (tame) step.defines.emplace("TAME", "1");
     if (moves) {

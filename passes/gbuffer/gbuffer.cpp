@@ -32,13 +32,21 @@ constexpr Target targets[] = {
 // Colour attachments that OpenGL 4.6 guarantees; further targets take a second step over the finished depth.
 constexpr size_t maxTargets = 8;
 
-Step rasterStep(std::string name, const SceneFacts& facts) {
+void draw(Commands& commands, bool overFinishedDepth) {
+    DrawState state;
+    if (overFinishedDepth) {
+        state.depth = Compare::Equal;
+        state.depthWrite = false;
+    }
+    commands.drawScene(state, {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided, TriangleClass::Masked,
+                               TriangleClass::MaskedDoubleSided});
+}
+
+Step rasterStep(std::string name, const SceneFacts& facts, bool overFinishedDepth) {
     return {.name = std::move(name),
+            .run = [overFinishedDepth](Commands& commands) { draw(commands, overFinishedDepth); },
             .shaders = {"gbuffer/gbuffer.vert", "gbuffer/gbuffer.frag"},
-            .defines = materialDefines(facts),
-            .uses = {},
-            .modules = {},
-            .group = {}};
+            .defines = materialDefines(facts)};
 }
 
 bool isConstantZero(const Target& target, const SceneFacts& facts) {
@@ -66,7 +74,7 @@ PassType GBuffer::type() {
 Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& demand) const {
     Declaration declaration;
     const Extent extent = world.extentOf(view());
-    std::vector<Step> steps = {rasterStep("rasterize", world.facts)};
+    std::vector<Step> steps = {rasterStep("rasterize", world.facts, false)};
     const bool empty = world.facts.triangles == 0;
     bool material = false;
     for (const Target& target : targets) {
@@ -77,7 +85,7 @@ Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& de
         } else {
             output.clear = glm::vec4(0);
             if (steps.back().uses.size() == maxTargets)
-                steps.push_back(rasterStep("rasterize_rest", world.facts));
+                steps.push_back(rasterStep("rasterize_rest", world.facts, true));
             steps.back().defines.emplace(target.define, "1");
             steps.back().uses.push_back({.port = target.port, .access = Access::Attachment, .write = true});
             material |= std::string_view(target.define) == "OUT_ALBEDO" ||
@@ -118,16 +126,6 @@ Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& de
     // longer, which the executor does for readers of last frame's transforms.
     if (jitter) declaration.depends |= Causes::Frame;
     return declaration;
-}
-
-void GBuffer::execute(const Step& step, Commands& commands) {
-    DrawState state;
-    if (step.name == "rasterize_rest") {
-        state.depth = Compare::Equal;
-        state.depthWrite = false;
-    }
-    commands.drawScene(state, {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided, TriangleClass::Masked,
-                               TriangleClass::MaskedDoubleSided});
 }
 
 } // namespace kestrel

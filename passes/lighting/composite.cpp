@@ -49,7 +49,6 @@ Declaration Composite::declare(const World&, const Inputs& inputs, const Demand&
               .defines = {{"ALBEDO_FORMAT", std::string(formatInfo(albedo.format).name)}},
               .uses = {{.port = "albedo", .access = Access::Image},
                        {.port = "result", .access = Access::Image, .write = true}},
-              .modules = {},
               .group = "composite"};
     if (ambient != glm::vec3(0)) step.defines.emplace("AMBIENT", "1");
     for (const Part& part : compositeParts) {

@@ -72,10 +72,8 @@ Declaration DirectLight::declare(const World& world, const Inputs& inputs, const
             declaration.problems.push_back({"", *mistake});
         declaration.outputs.push_back({.port = "maps", .desc = Desc::buffer(maps.blockBytes())});
         declaration.steps.push_back({.name = "views",
-                                     .shaders = {},
-                                     .defines = {},
+                                     .run = &DirectLight::uploadViews,
                                      .uses = {{.port = "maps", .access = Access::Copy, .write = true}},
-                                     .modules = {},
                                      .group = "generation"});
     }
     // Without shadows the array is one lit texel.
@@ -129,10 +127,10 @@ void DirectLight::declareShading(const World& world, const Inputs& inputs, const
         maps.lights() == 0 || inputs["depth"].constant == glm::vec4(0) || world.facts.triangles == 0;
     Step shade{
         .name = "shade",
+        .run = [extent = depth.extent](Commands& commands) { commands.dispatchOver(extent); },
         .shaders = {"lighting/direct_light.comp"},
         .defines = lightDefines(maps),
         .uses = {{.port = "depth", .access = Access::Fetch}, {.port = "normal", .access = Access::Fetch}},
-        .modules = {},
         .group = "shading"};
     const auto add = [&](const char* port, const char* define, bool lit) {
         Output output{.port = port, .desc = texture};
@@ -167,11 +165,7 @@ void DirectLight::declareShading(const World& world, const Inputs& inputs, const
 
 void DirectLight::declareModule(const World& world, const LightMapLayout& maps,
                                 Declaration& declaration) const {
-    Module module{.port = "radiance",
-                  .shader = "lighting/direct_light.glsl",
-                  .defines = lightDefines(maps),
-                  .uses = {},
-                  .modules = {}};
+    Module module{.port = "radiance", .shader = "lighting/direct_light.glsl", .defines = lightDefines(maps)};
     const bool shines = emission && world.facts.hasEmission;
     if (shines) module.defines.emplace("EMISSION", "1");
     if (maps.lights() > 0) {
@@ -185,13 +179,9 @@ void DirectLight::declareModule(const World& world, const LightMapLayout& maps,
         declaration.leftOut.push_back({"emission", "no material emits light"});
 }
 
-void DirectLight::execute(const Step& step, Commands& commands) {
-    const LightMapLayout maps = layout(commands.facts());
-    if (step.name == "shadows") return drawLightMaps(maps, commands);
-    if (step.name == "views")
-        return commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts().sphere,
-                                                     resolution, bias, {}, commands.frame()));
-    commands.dispatchOver(commands.desc("result").extent);
+void DirectLight::uploadViews(Commands& commands) const {
+    commands.upload("maps", lightMapBlock(layout(commands.facts()), commands.lights(),
+                                          commands.facts().sphere, resolution, bias, {}, commands.frame()));
 }
 
 } // namespace kestrel

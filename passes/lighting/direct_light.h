@@ -14,7 +14,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     enum class Filter { Nearest, Two, Four };
     int resolution = 1024;
@@ -25,6 +24,7 @@ public:
     bool areaLights = true;
 
 private:
+    void uploadViews(Commands& commands) const;
     [[nodiscard]] LightMapLayout layout(const SceneFacts& facts) const;
     [[nodiscard]] Defines lightDefines(const LightMapLayout& maps) const;
     void declareShading(const World& world, const Inputs& inputs, const Demand& demand,

@@ -96,15 +96,12 @@ Declaration Environment::declare(const World&, const Inputs& inputs, const Deman
     Module module{.port = "radiance",
                   .shader = "lighting/environment.glsl",
                   .defines = defines(),
-                  .uses = {{.port = "settings", .access = Access::Uniform}},
-                  .modules = {}};
+                  .uses = {{.port = "settings", .access = Access::Uniform}}};
     declaration.outputs = {{.port = "radiance", .desc = Desc::module(0)},
                            {.port = "settings", .desc = Desc::buffer(sizeof(shared::EnvironmentSettings))}};
     Step upload{.name = "settings",
-                .shaders = {},
-                .defines = {},
-                .uses = {{.port = "settings", .access = Access::Copy, .write = true}},
-                .modules = {}};
+                .run = &Environment::upload,
+                .uses = {{.port = "settings", .access = Access::Copy, .write = true}}};
     if (kind == Kind::Picture) {
         declaration.outputs.push_back(
             {.port = "picture", .desc = Desc::texture2D(Format::RGBA16F, pictureExtent)});
@@ -121,12 +118,12 @@ Declaration Environment::declare(const World&, const Inputs& inputs, const Deman
         declaration.outputs.push_back(
             {.port = "background", .desc = Desc::texture2D(Format::RGBA16F, depth.extent, depth.view)});
         Step step{.name = "background",
+                  .run = [extent = depth.extent](Commands& commands) { commands.dispatchOver(extent); },
                   .shaders = {"lighting/background.comp"},
                   .defines = defines(),
                   .uses = {{.port = "depth", .access = Access::Fetch},
                            {.port = "settings", .access = Access::Uniform},
-                           {.port = "background", .access = Access::Image, .write = true}},
-                  .modules = {}};
+                           {.port = "background", .access = Access::Image, .write = true}}};
         if (kind == Kind::Picture)
             step.uses.push_back({.port = "picture", .access = Access::Fetch, .linear = true});
         declaration.steps.push_back(std::move(step));
@@ -137,8 +134,7 @@ Declaration Environment::declare(const World&, const Inputs& inputs, const Deman
     return declaration;
 }
 
-void Environment::execute(const Step& step, Commands& commands) {
-    if (step.name == "background") return commands.dispatchOver(commands.desc("background").extent);
+void Environment::upload(Commands& commands) const {
     const glm::vec3& level = kind == Kind::Constant ? colour : horizon;
     commands.uploadValue("settings",
                          shared::EnvironmentSettings{intensity * zenith, glm::radians(rotation),

@@ -11,7 +11,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     enum class Kind { Constant, Gradient, Picture };
     Kind kind = Kind::Gradient;
@@ -23,6 +22,7 @@ public:
 
 private:
     [[nodiscard]] Defines defines() const;
+    void upload(Commands& commands) const;
 };
 
 } // namespace kestrel

@@ -202,10 +202,10 @@ std::vector<std::byte> lightMapBlock(const LightMapLayout& layout, const std::ve
 
 Step lightMapStep(std::string name, const World& world, const LightMapLayout& layout) {
     Step step{.name = std::move(name),
+              .run = [layout](Commands& commands) { drawLightMaps(layout, commands); },
               .shaders = {"lighting/light_map.vert", "lighting/light_map.frag"},
               .defines = layout.defines(),
               .uses = {{.port = "maps", .access = Access::Uniform}},
-              .modules = {},
               .group = "generation"};
     step.defines.merge(materialDefines(world.facts));
     // Choosing the layer in the vertex shader spares a stage where the driver can.

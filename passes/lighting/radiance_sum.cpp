@@ -14,8 +14,7 @@ PassType RadianceSum::type() {
 
 Declaration RadianceSum::declare(const World&, const Inputs& inputs, const Demand&) const {
     Declaration declaration;
-    Module module{
-        .port = "radiance", .shader = "lighting/radiance_sum.glsl", .defines = {}, .uses = {}, .modules = {}};
+    Module module{.port = "radiance", .shader = "lighting/radiance_sum.glsl"};
     Bits required = 0;
     for (const auto& [port, define] :
          {std::pair{"first", "FIRST"}, {"second", "SECOND"}, {"third", "THIRD"}, {"fourth", "FOURTH"}}) {
@@ -28,7 +27,5 @@ Declaration RadianceSum::declare(const World&, const Inputs& inputs, const Deman
     declaration.modules.push_back(std::move(module));
     return declaration;
 }
-
-void RadianceSum::execute(const Step&, Commands&) {} // it has no steps
 
 } // namespace kestrel

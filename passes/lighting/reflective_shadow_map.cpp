@@ -60,9 +60,7 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
     declaration.outputs = {{.port = "radiance", .desc = Desc::module(0)}};
     Module module{.port = "radiance",
                   .shader = "lighting/reflective_shadow_map.glsl",
-                  .defines = dark ? Defines{{"LIGHTS", "0"}} : maps.defines(),
-                  .uses = {},
-                  .modules = {}};
+                  .defines = dark ? Defines{{"LIGHTS", "0"}} : maps.defines()};
 
     // Without a light the arrays are one black texel.
     const auto side = static_cast<std::uint32_t>(dark ? 1 : resolution);
@@ -107,10 +105,8 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
     draw.uses.push_back({.port = "map_depth", .access = Access::Attachment, .write = true});
     declaration.modules.push_back(std::move(module));
     declaration.steps = {{.name = "views",
-                          .shaders = {},
-                          .defines = {},
+                          .run = &ReflectiveShadowMap::uploadViews,
                           .uses = {{.port = "maps", .access = Access::Copy, .write = true}},
-                          .modules = {},
                           .group = "generation"},
                          std::move(draw)};
 
@@ -128,11 +124,10 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
     return declaration;
 }
 
-void ReflectiveShadowMap::execute(const Step& step, Commands& commands) {
-    const LightMapLayout maps = layout(commands.facts());
-    if (step.name == "draw") return drawLightMaps(maps, commands);
-    commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts().sphere, resolution, bias,
-                                          {jitter, positionJitter}, commands.frame()));
+void ReflectiveShadowMap::uploadViews(Commands& commands) const {
+    commands.upload("maps",
+                    lightMapBlock(layout(commands.facts()), commands.lights(), commands.facts().sphere,
+                                  resolution, bias, {jitter, positionJitter}, commands.frame()));
 }
 
 } // namespace kestrel

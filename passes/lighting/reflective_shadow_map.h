@@ -13,7 +13,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     int resolution = 512;
     bool directional = false;
@@ -23,6 +22,7 @@ public:
     float bias = 1.5f;
 
 private:
+    void uploadViews(Commands& commands) const;
     [[nodiscard]] LightMapLayout layout(const SceneFacts& facts) const;
 };
 

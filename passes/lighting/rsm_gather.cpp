@@ -73,7 +73,6 @@ Declaration RsmGather::declare(const World& world, const Inputs& inputs, const D
                        {.port = "map_normal", .access = Access::Image},
                        {.port = "map_position", .access = Access::Image},
                        {.port = "result", .access = Access::Image, .write = true}},
-              .modules = {},
               .group = "gathering"};
     step.defines["SAMPLES"] = std::to_string(samples);
     if (rotate) {

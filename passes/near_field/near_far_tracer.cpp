@@ -37,16 +37,12 @@ Declaration NearFarTracer::declare(const World&, const Inputs& inputs, const Dem
     if ((given & provides::Surface) == 0) taken &= ~requests::Surface;
     declaration.modules.push_back({.port = "tracer",
                                    .shader = "near_field/near_far.glsl",
-                                   .defines = {},
                                    .uses = {{.port = "settings", .access = Access::Uniform}},
                                    .modules = {{"near", taken & ~requests::Snap}, {"far", taken}}});
     declaration.outputs.push_back(
         {.port = "settings", .desc = Desc::buffer(sizeof(shared::NearFarSettings))});
-    declaration.steps.push_back({.name = "settings",
-                                 .shaders = {},
-                                 .defines = {},
-                                 .uses = {{.port = "settings", .access = Access::Copy, .write = true}},
-                                 .modules = {}});
+    declaration.steps.push_back(
+        {.name = "settings", .uses = {{.port = "settings", .access = Access::Copy, .write = true}}});
     declaration.depends = Causes::Properties;
     return declaration;
 }

@@ -23,8 +23,7 @@ Declaration ScreenTrace::declare(const World&, const Inputs& inputs, const Deman
     Declaration declaration;
     declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Approximate)}};
     if (!demand.reads("tracer")) return declaration;
-    Module tracer{
-        .port = "tracer", .shader = "near_field/screen_trace.glsl", .defines = {}, .uses = {}, .modules = {}};
+    Module tracer{.port = "tracer", .shader = "near_field/screen_trace.glsl"};
     if (inputs["depth"].constant == glm::vec4(0)) {
         tracer.defines.emplace("EMPTY", "1");
         declaration.leftOut.push_back({"marching", "the depth is empty everywhere"});
@@ -43,11 +42,8 @@ Declaration ScreenTrace::declare(const World&, const Inputs& inputs, const Deman
     declaration.modules.push_back(std::move(tracer));
     declaration.outputs.push_back(
         {.port = "settings", .desc = Desc::buffer(sizeof(shared::ScreenTraceSettings))});
-    declaration.steps.push_back({.name = "settings",
-                                 .shaders = {},
-                                 .defines = {},
-                                 .uses = {{.port = "settings", .access = Access::Copy, .write = true}},
-                                 .modules = {}});
+    declaration.steps.push_back(
+        {.name = "settings", .uses = {{.port = "settings", .access = Access::Copy, .write = true}}});
     declaration.depends |= Causes::Properties;
     return declaration;
 }

@@ -37,7 +37,8 @@ AlignedMaps alignedMaps(int resolution, int angular, int levels, const Capabilit
         declaration.problems.push_back(
             {"tracer",
              fmt::format("{} maps of {} cells an edge need {} bytes in one storage block; the limit is {}",
-                         count, resolution, maps.desc.bytes, limit)});
+                         count, resolution, maps.desc.bytes, limit),
+             true});
     return maps;
 }
 
@@ -50,7 +51,6 @@ Step rotateStep(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
                        {.port = maps.levels > 1 ? "grids" : "grid", .access = Access::Uniform},
                        {.port = "rotations", .access = Access::Uniform},
                        {.port = "maps", .access = Access::Storage, .write = true}},
-              .modules = {},
               .group = "generation"};
     step.defines["RESOLUTION_BITS"] =
         std::to_string(std::countr_zero(static_cast<unsigned>(maps.resolution)));
@@ -69,8 +69,8 @@ Desc occupiedCellsDesc(const AlignedMaps& maps) {
     return Desc::buffer(sizeof(shared::OccupiedCellsHeader) + 4 * cells);
 }
 
-std::vector<Step> scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
-                               const Capabilities& capabilities) {
+ScatterSteps scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
+                          const Capabilities& capabilities) {
     Step rotate = rotateStep(maps, occupancy, inTurn, capabilities);
     const Use base = rotate.uses.front();
     const Use cells{.port = "cells", .access = Access::Storage};
@@ -96,47 +96,47 @@ std::vector<Step> scatterSteps(const AlignedMaps& maps, const Desc& occupancy, b
     blank.defines.emplace("BLANK", "1");
     blank.uses = {rotated, groups};
     rotate.uses.push_back(groups);
-    if (!inTurn) return {list, choose, scatter, rotate};
-    return {list, choose, blank, scatter, rotate};
+    return {std::move(list), std::move(choose), std::move(blank), std::move(scatter), std::move(rotate)};
 }
 
 void clearOccupiedCells(Commands& commands) { commands.uploadValue("cells", shared::OccupiedCellsHeader{}); }
 
 namespace {
 
-void setTurn(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands) {
-    if (!step.defines.contains("IN_TURN")) return;
+void setTurn(const AlignedMaps& maps, const Renewal& renewal, Commands& commands) {
     commands.set("firstPlace", renewal.first);
     commands.set("placeStride", renewalStride(maps.directions));
 }
 
 } // namespace
 
-void dispatchScatter(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands) {
-    using Header = shared::OccupiedCellsHeader;
-    if (step.name == "list")
-        return commands.dispatchOver(static_cast<std::uint32_t>(occupancyBytes(maps.resolution) / 4));
-    if (step.name == "choose") {
-        commands.set("mapCount", static_cast<std::uint32_t>(renewal.count));
-        return commands.dispatch(1);
-    }
-    setTurn(step, maps, renewal, commands);
-    commands.dispatchIndirect("cells", step.name == "blank"     ? offsetof(Header, blank)
-                                       : step.name == "scatter" ? offsetof(Header, scatter)
-                                                                : offsetof(Header, rotate));
+void listOccupiedCells(int resolution, Commands& commands) {
+    commands.dispatchOver(static_cast<std::uint32_t>(occupancyBytes(resolution) / 4));
 }
 
-void dispatchRotation(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands) {
-    setTurn(step, maps, renewal, commands);
+void chooseRotation(const Renewal& renewal, Commands& commands) {
+    commands.set("mapCount", static_cast<std::uint32_t>(renewal.count));
+    commands.dispatch(1);
+}
+
+void dispatchChosen(RotationPart part, const AlignedMaps& maps, const Renewal* renewal, Commands& commands) {
+    using Header = shared::OccupiedCellsHeader;
+    if (renewal != nullptr) setTurn(maps, *renewal, commands);
+    commands.dispatchIndirect("cells", part == RotationPart::Blank     ? offsetof(Header, blank)
+                                       : part == RotationPart::Scatter ? offsetof(Header, scatter)
+                                                                       : offsetof(Header, rotate));
+}
+
+void dispatchRotation(const AlignedMaps& maps, const Renewal& renewal, bool inTurn, Commands& commands) {
+    if (inTurn) setTurn(maps, renewal, commands);
     const auto n = static_cast<std::uint32_t>(maps.resolution);
     commands.dispatchOver(n, n, static_cast<std::uint32_t>(renewal.count));
 }
 
-void uploadCandidates(const Step& step, const Candidates& candidates, float offset, float skip,
-                      Commands& commands) {
+void uploadCandidates(const Candidates& candidates, float offset, float skip, Commands& commands) {
     commands.uploadValue("directions", shared::OccupancySettings{offset, skip, 0, 0});
     commands.upload("directions", candidates.strata(), sizeof(shared::OccupancySettings));
-    if (!usesPort(step, "rotations")) return;
+    if (!commands.uses("rotations")) return;
     std::vector<shared::RomaRotation> rotations;
     for (const shared::RomaDirection& stratum : candidates.strata())
         rotations.push_back(romaRotation(stratum.direction));

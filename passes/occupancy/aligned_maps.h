@@ -29,23 +29,30 @@ Step rotateStep(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
                 const Capabilities& capabilities);
 
 // Instead of rotateStep(): lists the occupied cells of the one base map in "cells", and where they are few
-// makes the maps from them alone (shaders/occupancy/scatter.comp). The steps "list", "choose",
-// "scatter" and "rotate"; in turn also "blank" in their midst, and else "maps" was cleared before.
-std::vector<Step> scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
-                               const Capabilities& capabilities);
+// makes the maps from them alone (shaders/occupancy/scatter.comp). In this order; `blank` is needed in turn
+// only, else "maps" was cleared before. What they run is up to the pass:
+struct ScatterSteps {
+    Step list, choose, blank, scatter, rotate;
+};
+ScatterSteps scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
+                          const Capabilities& capabilities);
 // Of "cells": room for as many as make scattering faster than visiting every cell.
 Desc occupiedCellsDesc(const AlignedMaps& maps);
-// In the step before "list".
+// In the step before `list`.
 void clearOccupiedCells(Commands& commands);
-// In one of those steps. "list" is needed only where the base map has changed.
-void dispatchScatter(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands);
+// In `list`: needed only where the base map has changed.
+void listOccupiedCells(int resolution, Commands& commands);
+// In `choose`: only where the list or the number of maps to make has changed.
+void chooseRotation(const Renewal& renewal, Commands& commands);
+// In the others. `renewal`: in turn, else null.
+enum class RotationPart { Blank, Scatter, Rotate };
+void dispatchChosen(RotationPart part, const AlignedMaps& maps, const Renewal* renewal, Commands& commands);
 
 // In the step that rotateStep() made: all maps, or those of the renewal in turn.
-void dispatchRotation(const Step& step, const AlignedMaps& maps, const Renewal& renewal, Commands& commands);
+void dispatchRotation(const AlignedMaps& maps, const Renewal& renewal, bool inTurn, Commands& commands);
 
 // Fills "directions" and, where the step writes it, "rotations".
-void uploadCandidates(const Step& step, const Candidates& candidates, float offset, float skip,
-                      Commands& commands);
+void uploadCandidates(const Candidates& candidates, float offset, float skip, Commands& commands);
 
 // The uses and defines by which a module reads "maps" and "directions".
 void addMapUses(const AlignedMaps& maps, const Capabilities& capabilities, Module& tracer);

@@ -13,15 +13,16 @@ Defines markingDefines(const World& world, int resolution) {
 
 std::vector<Step> exactSteps(const World& world, int resolution) {
     Step small{.name = "triangles",
+               .run = markTriangles,
                .shaders = {"occupancy/exact.comp"},
                .defines = markingDefines(world, resolution),
                .uses = {{.port = "grid", .access = Access::Uniform},
                         {.port = "occupancy", .access = Access::Storage, .write = true},
                         {.port = "large", .access = Access::Storage, .write = true}},
-               .modules = {},
                .group = "generation"};
     Step large = small;
     large.name = "large_triangles";
+    large.run = [](Commands& commands) { commands.dispatchIndirect("large"); };
     large.defines["LARGE"] = "1";
     large.uses.back().write = false;
     large.uses.push_back({.port = "large", .access = Access::Indirect});

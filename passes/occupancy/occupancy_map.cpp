@@ -76,10 +76,8 @@ Declaration OccupancyMap::declare(const World& world, const Inputs&, const Deman
         {.port = "occupancy", .desc = Desc::buffer(occupancyBytes(resolution), Format::R32UI)},
         {.port = "grid", .desc = Desc::buffer(sizeof(shared::OccupancyGrid))}};
     declaration.steps = {{.name = "grid",
-                          .shaders = {},
-                          .defines = {},
+                          .run = &OccupancyMap::uploadGrid,
                           .uses = {{.port = "grid", .access = Access::Copy, .write = true}},
-                          .modules = {},
                           .group = "generation"}};
     if (jitter) declaration.depends |= Causes::Frame;
     Output& occupancy = declaration.outputs.front();
@@ -118,12 +116,13 @@ void OccupancyMap::declareInternals(const Step& step, const World& world, Declar
 }
 
 std::vector<Step> OccupancyMap::rasterSteps(const World& world) const {
+    const int lastAxis = method == OccupancyMethod::DominantAxis ? 0 : 2; // a shader chooses the face itself
     Step step{.name = "rasterize",
+              .run = {&OccupancyMap::rasterizeAlong, 0, lastAxis},
               .shaders = {"occupancy/raster.vert", "occupancy/raster.frag"},
               .defines = markingDefines(world, resolution),
               .uses = {{.port = "grid", .access = Access::Uniform},
                        {.port = "occupancy", .access = Access::Storage, .write = true}},
-              .modules = {},
               .group = "generation"};
     step.defines.emplace("INTO_MAP", "1");
     if (method == OccupancyMethod::DominantAxis) {
@@ -137,18 +136,19 @@ std::vector<Step> OccupancyMap::columnSteps(const World& world) const {
     const bool attachments = method != OccupancyMethod::Interlock;
     const bool high = resolution > 128;
     std::vector<Step> steps;
+    const auto n = static_cast<std::uint32_t>(resolution);
     Step merge{.name = "merge",
+               .run = [n](Commands& commands) { commands.dispatchOver(n, n, n / 32); },
                .shaders = {"occupancy/merge.comp"},
                .defines = {{"RESOLUTION", std::to_string(resolution)}},
                .uses = {{.port = "occupancy", .access = Access::Storage, .write = true}},
-               .modules = {},
                .group = "generation"};
     for (int axis = 0; axis < 3; ++axis) {
         Step step{.name = fmt::format("rasterize_{}", "xyz"[axis]),
+                  .run = {&OccupancyMap::rasterizeAlong, axis, axis},
                   .shaders = {"occupancy/raster.vert", "occupancy/raster.frag"},
                   .defines = markingDefines(world, resolution),
                   .uses = {{.port = "grid", .access = Access::Uniform}},
-                  .modules = {},
                   .group = "generation"};
         step.defines.emplace("INTO_COLUMNS", "1");
         if (method == OccupancyMethod::Interlock) step.defines.emplace("BY_INTERLOCK", "1");
@@ -166,25 +166,18 @@ std::vector<Step> OccupancyMap::columnSteps(const World& world) const {
     return steps;
 }
 
-void OccupancyMap::execute(const Step& step, Commands& commands) {
-    const auto n = static_cast<std::uint32_t>(resolution);
-    if (step.name == "grid") return uploadGrid(commands);
-    if (step.name == "merge") return commands.dispatchOver(n, n, n / 32);
-    if (step.name == "large_triangles") return commands.dispatchIndirect("large");
-    if (step.name == "triangles") return markTriangles(commands);
-    DrawState state = DrawState::overwrite();
-    state.viewport = glm::uvec2(n);
-    state.logicOr = method == OccupancyMethod::LogicOp;
-    if (method == OccupancyMethod::DominantAxis) return rasterize(commands, state);
-    for (int axis = 0; axis < 3; ++axis) {
-        if (makesColumns(method) && step.name.back() != "xyz"[axis]) continue;
-        commands.set("axis", axis);
-        rasterize(commands, state);
+void OccupancyMap::rasterizeAlong(Commands& commands, int firstAxis, int lastAxis) const {
+    for (int axis = firstAxis; axis <= lastAxis; ++axis) {
+        if (method != OccupancyMethod::DominantAxis) commands.set("axis", axis);
+        rasterize(commands);
     }
 }
 
 // A surface with two sides has none to be marked behind.
-void OccupancyMap::rasterize(Commands& commands, const DrawState& state) const {
+void OccupancyMap::rasterize(Commands& commands) const {
+    DrawState state = DrawState::overwrite();
+    state.viewport = glm::uvec2(static_cast<unsigned>(resolution));
+    state.logicOr = method == OccupancyMethod::LogicOp;
     commands.set("inset", inset);
     commands.drawScene(state, oneSidedClasses);
     commands.set("inset", 0.0f);

@@ -25,7 +25,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     int resolution = 128;
     OccupancyMethod method = OccupancyMethod::ThreeAxis;
@@ -41,7 +40,8 @@ private:
     [[nodiscard]] std::vector<Step> columnSteps(const World& world) const;
     void declareInternals(const Step& step, const World& world, Declaration& declaration) const;
     void uploadGrid(Commands& commands) const;
-    void rasterize(Commands& commands, const DrawState& state) const;
+    void rasterizeAlong(Commands& commands, int firstAxis, int lastAxis) const;
+    void rasterize(Commands& commands) const;
 };
 
 } // namespace kestrel

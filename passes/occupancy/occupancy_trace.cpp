@@ -60,13 +60,10 @@ Declaration OccupancyTrace::declare(const World& world, const Inputs& inputs, co
                               {"WORDS", std::to_string(*resolution / 32)},
                               {"ITERATIONS", std::to_string(iterations)}},
                   .uses = {{.port = "grid", .access = Access::Uniform},
-                           {.port = "settings", .access = Access::Uniform}},
-                  .modules = {}};
+                           {.port = "settings", .access = Access::Uniform}}};
     Step settings{.name = "settings",
-                  .shaders = {},
-                  .defines = {},
+                  .run = &OccupancyTrace::uploadSettings,
                   .uses = {{.port = "settings", .access = Access::Copy, .write = true}},
-                  .modules = {},
                   .group = "generation"};
     if (inputs["occupancy"].constant == glm::vec4(0)) {
         tracer.defines["EMPTY"] = "1";
@@ -92,6 +89,7 @@ Declaration OccupancyTrace::declare(const World& world, const Inputs& inputs, co
 void OccupancyTrace::declareColumns(const World& world, int resolution, Declaration& declaration,
                                     Module& tracer) const {
     const int top = topLevel(resolution);
+    const auto n = static_cast<std::uint32_t>(resolution);
     const Desc desc = columnsDesc(resolution, top + 1);
     tracer.defines["METHOD"] = "2";
     tracer.defines["TOP_LEVEL"] = std::to_string(top);
@@ -101,10 +99,10 @@ void OccupancyTrace::declareColumns(const World& world, int resolution, Declarat
     declaration.outputs.push_back({.port = "columns", .desc = desc});
     Step columns{
         .name = "columns",
+        .run = [n](Commands& commands) { commands.dispatchOver(n, n); },
         .shaders = {"occupancy/columns.comp"},
         .defines = {{"RESOLUTION", std::to_string(resolution)}, {"WORDS", std::to_string(resolution / 32)}},
         .uses = {{.port = "columns", .access = Access::Storage, .write = true}},
-        .modules = {},
         .group = "generation"};
     Step coarser = columns;
     coarser.defines.emplace("COARSER", "1");
@@ -112,22 +110,17 @@ void OccupancyTrace::declareColumns(const World& world, int resolution, Declarat
     declaration.steps.push_back(std::move(columns));
     for (int level = 1; level <= top; ++level) {
         coarser.name = fmt::format("level{}", level);
+        coarser.run = [n, level](Commands& commands) {
+            commands.set("level", level);
+            commands.dispatchOver(n >> level, n >> level);
+        };
         declaration.steps.push_back(coarser);
     }
 }
 
-void OccupancyTrace::execute(const Step& step, Commands& commands) {
-    if (step.name == "report") return exhaustion::report(commands);
-    if (step.name == "settings") {
-        commands.uploadValue("settings", shared::OccupancySettings{offset, skip, 0, 0});
-        if (usesPort(step, "exhausted")) exhaustion::clear(commands);
-        return;
-    }
-    const auto n = static_cast<std::uint32_t>(*occupancyResolution(commands.desc("occupancy")));
-    if (step.name == "columns") return commands.dispatchOver(n, n);
-    const int level = std::stoi(step.name.substr(5));
-    commands.set("level", level);
-    commands.dispatchOver(n >> level, n >> level);
+void OccupancyTrace::uploadSettings(Commands& commands) const {
+    commands.uploadValue("settings", shared::OccupancySettings{offset, skip, 0, 0});
+    if (commands.uses("exhausted")) exhaustion::clear(commands);
 }
 
 } // namespace kestrel

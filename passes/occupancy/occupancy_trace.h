@@ -17,7 +17,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     TraceMethod method = TraceMethod::Dda2d;
     bool mips = true;
@@ -30,6 +29,7 @@ public:
     bool countExhausted = false;
 
 private:
+    void uploadSettings(Commands& commands) const;
     void declareColumns(const World& world, int resolution, Declaration& declaration, Module& tracer) const;
 };
 

@@ -53,15 +53,12 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
                   .shader = "occupancy/roma.glsl",
                   .defines = maps.defines(),
                   .uses = {{.port = "grid", .access = Access::Uniform},
-                           {.port = "directions", .access = Access::Image}},
-                  .modules = {}};
+                           {.port = "directions", .access = Access::Image}}};
     tracer.defines["ANGULAR"] = std::to_string(angular);
     tracer.defines["ITERATIONS"] = std::to_string(iterations);
     Step candidates{.name = "candidates",
-                    .shaders = {},
-                    .defines = {},
+                    .run = &Roma::upload,
                     .uses = {{.port = "directions", .access = Access::Copy, .write = true}},
-                    .modules = {},
                     .group = "generation"};
 
     const bool empty = inputs["occupancy"].constant == glm::vec4(0);
@@ -82,41 +79,62 @@ Declaration Roma::declare(const World& world, const Inputs& inputs, const Demand
         candidates.uses.push_back({.port = "rotations", .access = Access::Copy, .write = true});
         if (countExhausted) exhaustion::declare(declaration, tracer, candidates);
         declaration.steps.push_back(candidates);
-        if (rotation == RotationMethod::Gather) {
-            declaration.steps.push_back(rotateStep(maps, base, inTurn, world.capabilities));
-        } else {
+        if (rotation == RotationMethod::Automatic) {
             // Kept, so that a base map that stays as it is is listed once.
             declaration.outputs.push_back({.port = "cells", .desc = occupiedCellsDesc(maps), .keeps = true});
             declaration.steps.back().uses.push_back({.port = "cells", .access = Access::Copy, .write = true});
-            for (Step& step : scatterSteps(maps, base, inTurn, world.capabilities))
-                declaration.steps.push_back(std::move(step));
         }
+        for (Step& step : rotationSteps(maps, base, inTurn, world.capabilities))
+            declaration.steps.push_back(std::move(step));
     }
     declaration.modules.push_back(std::move(tracer));
     if (resample) declaration.depends = Causes::Frame;
     return declaration;
 }
 
-void Roma::execute(const Step& step, Commands& commands) {
-    if (step.name == "report") return exhaustion::report(commands);
-    if (step.name == "candidates") return upload(step, commands);
-    const AlignedMaps maps{*occupancyResolution(commands.desc("occupancy")), angular * angular, 1, {}};
-    if (rotation == RotationMethod::Gather) return dispatchRotation(step, maps, renewal_, commands);
-    const bool listed = step.name == "list" && !changed_;
-    const bool chosen = step.name == "choose" && !changed_ && renewal_.count == countBefore_;
-    if (!listed && !chosen) dispatchScatter(step, maps, renewal_, commands);
+std::vector<Step> Roma::rotationSteps(const AlignedMaps& maps, const Desc& base, bool inTurn,
+                                      const Capabilities& capabilities) const {
+    if (rotation == RotationMethod::Gather) {
+        Step rotate = rotateStep(maps, base, inTurn, capabilities);
+        rotate.run = {&Roma::rotate, maps, inTurn};
+        return {std::move(rotate)};
+    }
+    ScatterSteps steps = scatterSteps(maps, base, inTurn, capabilities);
+    steps.list.run = {&Roma::list, maps.resolution};
+    steps.choose.run = &Roma::choose;
+    steps.blank.run = {&Roma::rotateChosen, RotationPart::Blank, maps, inTurn};
+    steps.scatter.run = {&Roma::rotateChosen, RotationPart::Scatter, maps, inTurn};
+    steps.rotate.run = {&Roma::rotateChosen, RotationPart::Rotate, maps, inTurn};
+    if (!inTurn) return {steps.list, steps.choose, steps.scatter, steps.rotate};
+    return {steps.list, steps.choose, steps.blank, steps.scatter, steps.rotate};
 }
 
-void Roma::upload(const Step& step, Commands& commands) {
+void Roma::rotate(Commands& commands, const AlignedMaps& maps, bool inTurn) const {
+    dispatchRotation(maps, renewal_, inTurn, commands);
+}
+
+void Roma::list(Commands& commands, int resolution) const {
+    if (changed_) listOccupiedCells(resolution, commands);
+}
+
+void Roma::choose(Commands& commands) const {
+    if (changed_ || renewal_.count != countBefore_) chooseRotation(renewal_, commands);
+}
+
+void Roma::rotateChosen(Commands& commands, RotationPart part, const AlignedMaps& maps, bool inTurn) const {
+    dispatchChosen(part, maps, inTurn ? &renewal_ : nullptr, commands);
+}
+
+void Roma::upload(Commands& commands) {
     changed_ = any(commands.causes() & ~Causes::Frame) ||
                any(commands.causes("occupancy") | commands.causes("grid"));
     const FrameInfo& frame = commands.frame();
     countBefore_ = renewal_.count;
     renewal_ =
         candidates_.draw(angular, resample ? refresh : 0, changed_, resample ? frame.index : 0, frame.seed);
-    uploadCandidates(step, candidates_, offset, skip, commands);
-    if (changed_ && usesPort(step, "cells")) clearOccupiedCells(commands);
-    if (usesPort(step, "exhausted")) exhaustion::clear(commands);
+    uploadCandidates(candidates_, offset, skip, commands);
+    if (changed_ && commands.uses("cells")) clearOccupiedCells(commands);
+    if (commands.uses("exhausted")) exhaustion::clear(commands);
 }
 
 } // namespace kestrel

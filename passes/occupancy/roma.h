@@ -1,6 +1,7 @@
 // Ray-aligned occupancy map array: Zeng et al., "Ray-aligned Occupancy Map Array for Fast Approximate Ray
 // Tracing".
 #pragma once
+#include "aligned_maps.h"
 #include "candidates.h"
 #include "graph/pass.h"
 #include "graph/registry.h"
@@ -18,7 +19,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     int angular = 4;
     int iterations = 8;
@@ -32,7 +32,13 @@ public:
     bool countExhausted = false;
 
 private:
-    void upload(const Step& step, Commands& commands);
+    [[nodiscard]] std::vector<Step> rotationSteps(const AlignedMaps& maps, const Desc& base, bool inTurn,
+                                                  const Capabilities& capabilities) const;
+    void upload(Commands& commands);
+    void rotate(Commands& commands, const AlignedMaps& maps, bool inTurn) const;
+    void list(Commands& commands, int resolution) const;
+    void choose(Commands& commands) const;
+    void rotateChosen(Commands& commands, RotationPart part, const AlignedMaps& maps, bool inTurn) const;
 
     Candidates candidates_;
     Renewal renewal_;      // of this frame

@@ -30,8 +30,6 @@ bool sameGrid(const shared::OccupancyGrid& a, const shared::OccupancyGrid& b) {
     return a.centre == b.centre && a.cellSize == b.cellSize && a.resolution == b.resolution;
 }
 
-int levelOf(const Step& step) { return step.name.back() - '0'; }
-
 } // namespace
 
 PassType RomaCascade::type() {
@@ -90,17 +88,14 @@ Declaration RomaCascade::declare(const World& world, const Inputs&, const Demand
                   .shader = "occupancy/roma_cascade.glsl",
                   .defines = maps.defines(),
                   .uses = {{.port = "grids", .access = Access::Uniform},
-                           {.port = "directions", .access = Access::Image}},
-                  .modules = {}};
+                           {.port = "directions", .access = Access::Image}}};
     tracer.defines["LEVELS"] = std::to_string(levels);
     tracer.defines["ANGULAR"] = std::to_string(angular);
     tracer.defines["ITERATIONS"] = std::to_string(iterations);
     Step begin{.name = "begin",
-               .shaders = {},
-               .defines = {},
+               .run = &RomaCascade::begin,
                .uses = {{.port = "grids", .access = Access::Copy, .write = true},
                         {.port = "directions", .access = Access::Copy, .write = true}},
-               .modules = {},
                .group = "generation"};
     if (world.facts.triangles == 0 || !hasExtent(world.facts.sphere, resolution)) {
         tracer.defines["EMPTY"] = "1";
@@ -135,24 +130,27 @@ void RomaCascade::declareMaps(const World& world, Declaration& declaration, Modu
     const bool inTurn = resample && refresh > 0 && refresh < maps.directions;
     if (refresh > 0 && !resample)
         declaration.leftOut.push_back({"renewing maps in turn", "the candidates stay as they are"});
-    std::vector<Step> steps = {{.name = "clear",
-                                .shaders = {},
-                                .defines = {},
-                                .uses = {{.port = "occupancy", .access = Access::Copy, .write = true},
-                                         {.port = "large", .access = Access::Copy, .write = true}},
-                                .modules = {},
-                                .group = "generation"}};
-    for (Step& step : exactSteps(world, resolution)) {
-        step.defines["LEVELS"] = std::to_string(levels);
-        step.uses.front().port = "grids";
-        steps.push_back(std::move(step));
-    }
-    steps.push_back(rotateStep(maps, occupancy, inTurn, world.capabilities));
-    for (int level = 0; level < levels; ++level)
-        for (Step step : steps) {
+    const Step clear{.name = "clear",
+                     .uses = {{.port = "occupancy", .access = Access::Copy, .write = true},
+                              {.port = "large", .access = Access::Copy, .write = true}},
+                     .group = "generation"};
+    const std::vector<Step> marking = exactSteps(world, resolution);
+    const Step rotate = rotateStep(maps, occupancy, inTurn, world.capabilities);
+    for (int level = 0; level < levels; ++level) {
+        const auto add = [&](Step step, StepRun run) {
             step.name += fmt::format("_{}", level);
+            step.run = std::move(run);
             declaration.steps.push_back(std::move(step));
+        };
+        add(clear, {&RomaCascade::clearLevel, level});
+        for (Step step : marking) {
+            step.defines["LEVELS"] = std::to_string(levels);
+            step.uses.front().port = "grids";
+            const StepRun run = step.run;
+            add(std::move(step), {&RomaCascade::markLevel, level, run});
         }
+        add(rotate, {&RomaCascade::rotateLevel, level, maps, inTurn});
+    }
     declaration.depends |= Causes::Geometry | Causes::Transforms;
     if (world.facts.hasMasked)
         declaration.depends |= Causes::Materials;
@@ -160,7 +158,7 @@ void RomaCascade::declareMaps(const World& world, Declaration& declaration, Modu
         declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
 }
 
-void RomaCascade::begin(const Step& step, Commands& commands) {
+void RomaCascade::begin(Commands& commands) {
     const FrameInfo& frame = commands.frame();
     const bool changed = any(commands.causes() & ~(Causes::Frame | Causes::Camera | Causes::Cut));
     std::vector<shared::OccupancyGrid> grids =
@@ -172,34 +170,30 @@ void RomaCascade::begin(const Step& step, Commands& commands) {
     commands.upload("grids", grids_);
     renewal_ =
         candidates_.draw(angular, resample ? refresh : 0, changed, resample ? frame.index : 0, frame.seed);
-    uploadCandidates(step, candidates_, offset, skip, commands);
-    if (usesPort(step, "exhausted")) exhaustion::clear(commands);
+    uploadCandidates(candidates_, offset, skip, commands);
+    if (commands.uses("exhausted")) exhaustion::clear(commands);
     commands.report("levels marked", static_cast<double>(std::count(stale_.begin(), stale_.end(), true)));
 }
 
-void RomaCascade::execute(const Step& step, Commands& commands) {
-    if (step.name == "report") return exhaustion::report(commands);
-    if (step.name == "begin") return begin(step, commands);
-    const int level = levelOf(step);
-    const bool stale = stale_.at(static_cast<size_t>(level));
-    const std::string_view what(step.name.data(), step.name.size() - 2);
-    if (what != "clear") commands.set("level", level);
-    if (what == "rotate") {
-        const AlignedMaps maps{resolution, angular * angular, levels, {}};
-        if (stale) return dispatchRotation(step, maps, {0, maps.directions}, commands);
-        if (resample) dispatchRotation(step, maps, renewal_, commands);
-    } else if (!stale) {
-        return;
-    } else if (what == "triangles") {
-        markTriangles(commands);
-    } else if (what == "large_triangles") {
-        commands.dispatchIndirect("large");
-    } else {
-        const std::uint64_t bytes = occupancyBytes(resolution);
-        commands.upload("occupancy", std::vector<std::uint32_t>(bytes / 4),
-                        bytes * static_cast<std::uint64_t>(level));
-        commands.uploadValue("large", glm::uvec4(0));
-    }
+void RomaCascade::clearLevel(Commands& commands, int level) const {
+    if (!isStale(level)) return;
+    const std::uint64_t bytes = occupancyBytes(resolution);
+    commands.upload("occupancy", std::vector<std::uint32_t>(bytes / 4),
+                    bytes * static_cast<std::uint64_t>(level));
+    commands.uploadValue("large", glm::uvec4(0));
+}
+
+void RomaCascade::markLevel(Commands& commands, int level, const StepRun& marking) {
+    commands.set("level", level);
+    if (isStale(level)) marking(*this, commands);
+}
+
+void RomaCascade::rotateLevel(Commands& commands, int level, const AlignedMaps& maps, bool inTurn) const {
+    commands.set("level", level);
+    if (isStale(level))
+        dispatchRotation(maps, {0, maps.directions}, inTurn, commands);
+    else if (resample)
+        dispatchRotation(maps, renewal_, inTurn, commands);
 }
 
 } // namespace kestrel

@@ -1,5 +1,6 @@
 // Nested ray-aligned occupancy map arrays around the camera (ROMA, section 7.2, "scalability").
 #pragma once
+#include "aligned_maps.h"
 #include "candidates.h"
 #include "graph/pass.h"
 #include "graph/registry.h"
@@ -17,7 +18,6 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     int levels = 3;
     float ratio = 0.5f;
@@ -32,7 +32,11 @@ public:
 
 private:
     void declareMaps(const World& world, Declaration& declaration, Module& tracer, Step& begin) const;
-    void begin(const Step& step, Commands& commands);
+    [[nodiscard]] bool isStale(int level) const { return stale_.at(static_cast<size_t>(level)); }
+    void begin(Commands& commands);
+    void clearLevel(Commands& commands, int level) const;
+    void markLevel(Commands& commands, int level, const StepRun& marking);
+    void rotateLevel(Commands& commands, int level, const AlignedMaps& maps, bool inTurn) const;
 
     std::vector<shared::OccupancyGrid> grids_; // of the last frame, finest first
     std::vector<bool> stale_;                  // by level: is marked anew in this frame

@@ -37,10 +37,6 @@ std::optional<int> mapResolution(const Inputs& inputs, Declaration& declaration)
     return resolution;
 }
 
-bool usesPort(const Step& step, std::string_view port) {
-    return std::any_of(step.uses.begin(), step.uses.end(), [&](const Use& use) { return use.port == port; });
-}
-
 namespace exhaustion {
 
 void declare(Declaration& declaration, Module& tracer, Step& clears) {
@@ -49,12 +45,9 @@ void declare(Declaration& declaration, Module& tracer, Step& clears) {
     declaration.outputs.push_back(
         {.port = "exhausted", .desc = Desc::buffer(sizeof(ExhaustedRays)), .keeps = true});
     clears.uses.push_back({.port = "exhausted", .access = Access::Copy, .write = true});
-    declaration.steps.insert(declaration.steps.begin(),
-                             {.name = "report",
-                              .shaders = {},
-                              .defines = {},
-                              .uses = {{.port = "exhausted", .access = Access::Host}},
-                              .modules = {}});
+    declaration.steps.insert(
+        declaration.steps.begin(),
+        {.name = "report", .run = report, .uses = {{.port = "exhausted", .access = Access::Host}}});
     declaration.always = true;
 }
 

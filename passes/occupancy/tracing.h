@@ -27,7 +27,4 @@ void clear(Commands& commands);  // in the step that clears it
 void report(Commands& commands); // in the step "report": "rays" and "exhausted rays"
 } // namespace exhaustion
 
-// Whether a step uses a port.
-bool usesPort(const Step& step, std::string_view port);
-
 } // namespace kestrel

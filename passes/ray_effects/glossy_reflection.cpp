@@ -46,7 +46,6 @@ Declaration GlossyReflection::declare(const World& world, const Inputs& inputs, 
     Step step{
         .name = {},
         .shaders = {"ray_effects/glossy_reflection.comp"},
-        .defines = {},
         .uses = {{.port = "depth", .access = Access::Fetch},
                  {.port = "normal", .access = Access::Image},
                  // Read once a pixel: image units are kept for what a tracer reads at random.

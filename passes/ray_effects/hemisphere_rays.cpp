@@ -27,11 +27,9 @@ Declaration HemisphereRays::declare(const World&, const Inputs& inputs, const De
         {.port = "rays", .desc = Desc::buffer(pixels * sizeof(shared::RayRecord), Format::RGBA32UI)});
     declaration.steps.push_back({.name = "generate",
                                  .shaders = {"ray_effects/hemisphere_rays.comp"},
-                                 .defines = {},
                                  .uses = {{.port = "depth", .access = Access::Fetch},
                                           {.port = "normal", .access = Access::Image},
                                           {.port = "rays", .access = Access::Storage, .write = true}},
-                                 .modules = {},
                                  .group = "rays"});
     declaration.depends = Causes::Frame | Causes::Properties;
     return declaration;

@@ -58,7 +58,6 @@ Declaration IndirectDiffuse::declare(const World& world, const Inputs& inputs, c
     Step step{
         .name = {},
         .shaders = {"ray_effects/indirect_diffuse.comp"},
-        .defines = {},
         .uses = {{.port = "depth", .access = Access::Fetch},
                  {.port = "normal", .access = Access::Image},
                  {.port = "result", .access = Access::Image, .write = true}},

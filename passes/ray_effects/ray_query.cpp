@@ -32,7 +32,6 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
               .shaders = {"ray_effects/ray_query.comp"},
               .defines = {{"GROUP_SIZE", std::to_string(groupSize)},
                           {"GROUPS_PER_ROW", std::to_string(groupsPerRow)}},
-              .uses = {},
               .modules = {{"tracer", (query == Query::Any ? requests::AnyHit : requests::ClosestHit) |
                                          (snap ? requests::Snap : 0)}},
               .group = "tracing"};

@@ -13,18 +13,10 @@ namespace {
 // How many emissive triangles there are is known only once there are triangles; more make the buffer grow.
 constexpr std::uint64_t firstEmissiveTriangles = 1024;
 
-// A pass does not know its own name, so the most that any buffer of this port needed counts.
-std::uint64_t grownEmitters(const World& world) {
-    std::uint64_t most = 0;
-    for (const auto& [port, elements] : world.grown)
-        if (port.ends_with(".emitters")) most = std::max(most, elements);
-    return most;
-}
-
-std::uint64_t emitterCapacity(const World& world, bool emission) {
+std::uint64_t emitterCapacity(const World& world, const Demand& demand, bool emission) {
     std::uint64_t count = std::uint64_t{world.facts.rectangleLights} + world.facts.sphereLights;
     if (emission && world.facts.hasEmission) count += std::min(world.facts.triangles, firstEmissiveTriangles);
-    return std::max({std::uint64_t{1}, count, grownEmitters(world)});
+    return std::max({std::uint64_t{1}, count, demand.grown("emitters")});
 }
 
 shared::EmitterRecord recordOfEmitter(const AreaEmitter& emitter) {
@@ -96,12 +88,14 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
         return declaration;
     }
     const bool tellsVisibility = demand.reads("visibility"), tellsWeight = demand.reads("weight");
-    const std::uint64_t capacity = emitterCapacity(world, meshes);
+    const std::uint64_t capacity = emitterCapacity(world, demand, meshes);
     const auto limit = static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
     if (capacity * shared::emitterRecordTexels > limit)
         declaration.problems.push_back(
-            {"emitters", fmt::format("{} emitters need {} texels in a buffer texture; the limit is {}",
-                                     capacity, capacity * shared::emitterRecordTexels, limit)});
+            {"emitters",
+             fmt::format("{} emitters need {} texels in a buffer texture; the limit is {}", capacity,
+                         capacity * shared::emitterRecordTexels, limit),
+             true});
     declaration.outputs.push_back(std::move(result));
     if (tellsVisibility) declaration.outputs.push_back(std::move(visibility));
     if (tellsWeight) declaration.outputs.push_back(std::move(weight));
@@ -114,16 +108,13 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
     if (!spheres) declaration.leftOut.push_back({"sphere lights", "the scene has none"});
 
     declaration.steps.push_back({.name = "emitters",
-                                 .shaders = {},
-                                 .defines = {},
+                                 .run = &SoftShadow::upload,
                                  .uses = {{.port = "emitters", .access = Access::Copy, .write = true}},
-                                 .modules = {},
                                  .group = "generation"});
     // A proxy's hit may be the light's own surface, which only the distance tells.
     const bool approximate = (inputs["tracer"].desc.provides & provides::Approximate) != 0;
-    Step step{.name = {},
+    Step step{.run = &SoftShadow::trace,
               .shaders = {"ray_effects/soft_shadow.comp"},
-              .defines = {},
               .uses = {{.port = "depth", .access = Access::Fetch},
                        {.port = "normal", .access = Access::Fetch},
                        {.port = "emitters", .access = Access::Image},
@@ -148,8 +139,7 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
     return declaration;
 }
 
-void SoftShadow::execute(const Step& step, Commands& commands) {
-    if (step.name == "emitters") return upload(commands);
+void SoftShadow::trace(Commands& commands) const {
     commands.set("emitterCount", static_cast<std::uint32_t>(emitters_.size()));
     commands.dispatchOver(commands.desc("result").extent);
 }

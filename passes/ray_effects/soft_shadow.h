@@ -18,13 +18,13 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     int rays = 1;
     bool emission = true, snap = false;
 
 private:
     void upload(Commands& commands);
+    void trace(Commands& commands) const;
 
     std::vector<AreaEmitter> emitters_; // as uploaded
 };

@@ -8,8 +8,7 @@ Declaration declareGather(const Inputs& inputs, const std::vector<std::string>& 
                           const std::vector<std::string>& writes, const std::string& leftOut) {
     Declaration declaration;
     const Desc& position = inputs["position"].desc;
-    Step step{
-        .name = "gather", .shaders = {}, .defines = {}, .uses = {}, .modules = {}, .group = "reference"};
+    Step step{.name = "gather", .group = "reference"};
     for (const std::string& port : reads) {
         step.uses.push_back({.port = port, .access = Access::Host});
         if (inputs[port].desc.extent != position.extent)

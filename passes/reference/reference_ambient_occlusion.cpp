@@ -35,12 +35,9 @@ Declaration ReferenceAmbientOcclusion::declare(const World&, const Inputs& input
     }
     declaration.outputs.push_back(std::move(visibility));
     declaration.steps.push_back({.name = "trace",
-                                 .shaders = {},
-                                 .defines = {},
                                  .uses = {{.port = "position", .access = Access::Host},
                                           {.port = "normal", .access = Access::Host},
                                           {.port = "visibility", .access = Access::Copy, .write = true}},
-                                 .modules = {},
                                  .group = "reference"});
     declaration.depends = Causes::Geometry | Causes::Transforms | Causes::Materials | Causes::Properties;
     return declaration;

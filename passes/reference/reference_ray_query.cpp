@@ -38,29 +38,22 @@ Declaration ReferenceRayQuery::declare(const World&, const Inputs& inputs, const
     Declaration declaration;
     const std::uint64_t count = inputs["rays"].desc.bytes / sizeof(shared::RayRecord);
     declaration.outputs.push_back({.port = "hits", .desc = Desc::buffer(count * sizeof(shared::HitRecord))});
-    const auto step = [&](const char* name, std::vector<Use> uses, const char* group) {
-        declaration.steps.push_back({.name = name,
-                                     .shaders = {},
-                                     .defines = {},
-                                     .uses = std::move(uses),
-                                     .modules = {},
-                                     .group = group});
+    const auto step = [&](const char* name, StepRun run, std::vector<Use> uses, const char* group) {
+        declaration.steps.push_back(
+            {.name = name, .run = std::move(run), .uses = std::move(uses), .group = group});
     };
-    step("build", {}, "generation");
-    step("take", {{.port = "rays", .access = Access::Host}}, "transfer");
-    step("trace", {}, "tracing");
-    step("give", {{.port = "hits", .access = Access::Copy, .write = true}}, "transfer");
+    step("build", &ReferenceRayQuery::build, {}, "generation");
+    step("take", &ReferenceRayQuery::take, {{.port = "rays", .access = Access::Host}}, "transfer");
+    step("trace", &ReferenceRayQuery::trace, {}, "tracing");
+    step("give", &ReferenceRayQuery::give, {{.port = "hits", .access = Access::Copy, .write = true}},
+         "transfer");
     declaration.depends = Causes::Geometry | Causes::Transforms | Causes::Materials | Causes::Properties;
     return declaration;
 }
 
-void ReferenceRayQuery::execute(const Step& step, Commands& commands) {
+void ReferenceRayQuery::build(Commands& commands) {
     constexpr Causes scene = Causes::Geometry | Causes::Transforms | Causes::Materials;
-    if (step.name == "build" && (!tracer_ || any(commands.causes() & scene)))
-        tracer_.emplace(commands.geometry(), commands.scene());
-    if (step.name == "take") take(commands);
-    if (step.name == "trace") trace();
-    if (step.name == "give") give(commands);
+    if (!tracer_ || any(commands.causes() & scene)) tracer_.emplace(commands.geometry(), commands.scene());
 }
 
 void ReferenceRayQuery::take(Commands& commands) {
@@ -83,7 +76,7 @@ void ReferenceRayQuery::take(Commands& commands) {
     closest_.assign(rays_.size(), {});
 }
 
-void ReferenceRayQuery::trace() {
+void ReferenceRayQuery::trace(Commands&) {
     const size_t batches = (rays_.size() + raysPerBatch - 1) / raysPerBatch;
     forEachRow(static_cast<int>(batches), threads, [&](int batch) {
         const size_t first = static_cast<size_t>(batch) * raysPerBatch;

@@ -19,14 +19,14 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     Query query = Query::Any;
     int threads = 2;
 
 private:
+    void build(Commands& commands);
     void take(Commands& commands);
-    void trace();
+    void trace(Commands& commands);
     void give(Commands& commands);
 
     std::optional<ReferenceTracer> tracer_;

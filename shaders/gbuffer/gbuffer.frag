@@ -1,6 +1,9 @@
 // Each OUT_… define switches one output on; what nobody reads is not computed.
 #include "lib/fragment.glsl"
 #include "lib/view.glsl"
+#ifdef OUT_MOTION
+#include "lib/last_view.glsl"
+#endif
 
 layout(std140) uniform DepthView { ViewData depthView; };
 

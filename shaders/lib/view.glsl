@@ -30,13 +30,6 @@ bool project(ViewData view, vec3 position, out vec2 pixel, out float depth) {
     return clip.w > 0.0;
 }
 
-// Where the position stood in the last frame's image of the same kind (no jitter); false behind the eye.
-bool projectPrevious(ViewData view, vec3 previousPosition, out vec2 pixel) {
-    vec4 clip = view.previousViewProjection * vec4(previousPosition, 1.0);
-    pixel = (clip.xy / clip.w * 0.5 + 0.5) * vec2(view.size);
-    return clip.w > 0.0;
-}
-
 // The ray of a pixel coordinate: unit direction, from the near plane (tNear) to the far plane (tFar, infinite if there is
 // none), as distances from the origin, which is the eye or, of an orthographic camera, on the plane of the eye.
 void cameraRay(ViewData view, vec2 pixel, out vec3 origin, out vec3 direction, out float tNear, out float tFar) {

@@ -21,8 +21,11 @@ struct FunctionPass final : Pass {
     float value = 1;
     std::string name = "?";
 
+    mutable Demand demand = Demand::nothing(); // that it was declared with last
+
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
-                                      const Demand&) const override {
+                                      const Demand& asked) const override {
+        demand = asked;
         return onDeclare(*this, world, inputs);
     }
     void execute(const Step& step, Commands& commands) override { onExecute(*this, step, commands); }

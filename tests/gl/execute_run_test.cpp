@@ -106,6 +106,73 @@ TEST_F(RunTest, SharedMemoryGivesTheSameImage) {
     EXPECT_THAT(shared->read({"d", "result"}).values, Each(15.0f));
 }
 
+TEST_F(RunTest, WhatSharesMemoryIsReadAsAPreviewOnly) {
+    const Graph chain =
+        graphOf({"a: FrameFill = 1", "b: Add = 2", "c: Add = 4", "d: Add = 8"},
+                {"a.result > b.signal", "b.result > c.signal", "c.result > d.signal"}, {"d.result"});
+    for (const bool keepAll : {false, true}) {
+        RenderOptions options;
+        options.keepAll = keepAll;
+        const auto renderer = rendererOf(chain, options);
+        renderer->frame();
+        EXPECT_THAT(messageOf<InputError>([&] {
+                        static_cast<void>(renderer->read({"a", "result"}));
+                    }),
+                    AllOf(HasSubstr("a.result shares its memory with c.result"), HasSubstr("preview")));
+        renderer->setPreviews({{"a", "result"}});
+        renderer->frame();
+        EXPECT_THAT(renderer->read({"a", "result"}).values, Each(1.0f));
+        EXPECT_THAT(renderer->read({"d", "result"}).values, Each(15.0f));
+    }
+}
+
+TEST_F(RunTest, APreviewChangesNoFigure) {
+    const Graph graph =
+        graphOf({"a: FrameFill = 1", "b: Add = 2", "c: Add = 4", "seen: Add = 8"},
+                {"a.result > b.signal", "b.result > c.signal", "b.result > seen.signal"}, {"c.result"});
+    const auto renderer = rendererOf(graph);
+    renderer->frame();
+    const MemoryReport memory = renderer->plan().memory;
+    const std::vector<LeftOut> leftOut = renderer->plan().leftOut;
+    ASSERT_FALSE(leftOut.empty());
+    renderer->setPreviews({{"seen", "result"}, {"a", "result"}});
+    renderer->setTiming(true);
+    renderer->frame();
+    EXPECT_THAT(renderer->read({"seen", "result"}).values, Each(11.0f));
+    const Plan& plan = renderer->plan();
+    EXPECT_EQ(plan.memory.transient, memory.transient);
+    EXPECT_EQ(plan.memory.unshared, memory.unshared);
+    EXPECT_EQ(plan.memory.persistent, memory.persistent);
+    EXPECT_GT(plan.previews.memory, 0U);
+    ASSERT_EQ(plan.leftOut.size(), leftOut.size());
+    EXPECT_EQ(plan.leftOut.front().what, leftOut.front().what);
+    for (const StepSample& sample : renderer->last().samples)
+        EXPECT_EQ(sample.preview, sample.pass == "seen");
+}
+
+TEST_F(RunTest, ADaysEditsLeaveMemoryFlat) {
+    shader("scaled.comp", R"(layout(local_size_x = 8, local_size_y = 8) in;
+        layout(r32f) uniform writeonly image2D result;
+        void main() { imageStore(result, ivec2(gl_GlobalInvocationID.xy), vec4(SCALE)); })");
+    addType(
+        "Scaled", {"out result"},
+        [](const FunctionPass& pass, const World& world, const Inputs&) {
+            Declaration declaration;
+            declaration.outputs = {imageOf(world, "result")};
+            declaration.steps = {stepOf("fill", {"scaled.comp"}, {write("result")})};
+            declaration.steps.front().defines.emplace("SCALE", fmt::format("{}.0", pass.value));
+            return declaration;
+        },
+        [](FunctionPass&, const Step&, Commands& commands) { overFrame(commands); });
+    const auto renderer = rendererOf(graphOf({"a: Scaled = 1"}, {}, {"a.result"}));
+    for (int i = 0; i < 100; ++i) {
+        renderer->set(fmt::format("a.value={}", i));
+        renderer->frame();
+    }
+    EXPECT_THAT(renderer->read({"a", "result"}).values, Each(99.0f));
+    EXPECT_LE(renderer->executor().programs().cached(), Programs::maxUnused + 1);
+}
+
 TEST_F(RunTest, TimesAreTakenByStepAndGroup) {
     RenderOptions options;
     options.timing = true;

@@ -30,7 +30,7 @@ struct GivenImages final : Pass {
     }
     [[nodiscard]] Declaration declare(const World& world, const Inputs&, const Demand&) const override {
         Declaration declaration;
-        Step step{.name = "give", .shaders = {}, .defines = {}, .uses = {}, .modules = {}};
+        Step step{.name = "give"};
         for (const auto& [port, image] : *given) {
             Format format = Format::R32F;
             if (port == "normal" || (port == "signal" && colours == 4)) format = Format::RGBA32F;

@@ -30,7 +30,6 @@ public:
             {.port = "result", .desc = Desc::texture2D(Format::RGBA32F, inputs["depth"].desc.extent)}};
         declaration.steps = {{.name = "show",
                               .shaders = {"radiance_probe.comp"},
-                              .defines = {},
                               .uses = {{.port = "depth", .access = Access::Fetch},
                                        {.port = "normal", .access = Access::Fetch},
                                        {.port = "albedo", .access = Access::Fetch},

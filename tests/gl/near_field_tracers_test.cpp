@@ -23,7 +23,6 @@ public:
         declaration.outputs = {{.port = "normals", .desc = Desc::buffer(rays * sizeof(glm::vec4))}};
         declaration.steps = {{.name = "ask",
                               .shaders = {"surface_query.comp"},
-                              .defines = {},
                               .uses = {{.port = "rays", .access = Access::Storage},
                                        {.port = "normals", .access = Access::Storage, .write = true}},
                               .modules = {{"tracer", requests::ClosestHit | requests::Surface}}}};
@@ -69,8 +68,7 @@ public:
         Declaration declaration;
         declaration.outputs = {
             {.port = "tracer", .desc = Desc::module(provides::Snaps | provides::AlwaysSnaps)}};
-        declaration.modules = {
-            {.port = "tracer", .shader = "nothing.glsl", .defines = {}, .uses = {}, .modules = {}}};
+        declaration.modules = {{.port = "tracer", .shader = "nothing.glsl"}};
         return declaration;
     }
     void execute(const Step&, Commands&) override {}

@@ -92,11 +92,8 @@ public:
         declaration.outputs = {{.port = "occupancy", .desc = Desc::buffer(words.size() * 4, Format::R32UI)},
                                {.port = "grid", .desc = Desc::buffer(sizeof(shared::OccupancyGrid))}};
         declaration.steps = {{.name = "upload",
-                              .shaders = {},
-                              .defines = {},
                               .uses = {{.port = "occupancy", .access = Access::Copy, .write = true},
-                                       {.port = "grid", .access = Access::Copy, .write = true}},
-                              .modules = {}}};
+                                       {.port = "grid", .access = Access::Copy, .write = true}}}};
         return declaration;
     }
     void execute(const Step&, Commands& commands) override {

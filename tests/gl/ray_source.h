@@ -19,11 +19,8 @@ public:
         Declaration declaration;
         declaration.outputs = {
             {.port = "rays", .desc = Desc::buffer(rays.size() * sizeof(shared::RayRecord))}};
-        declaration.steps = {{.name = "upload",
-                              .shaders = {},
-                              .defines = {},
-                              .uses = {{.port = "rays", .access = Access::Copy, .write = true}},
-                              .modules = {}}};
+        declaration.steps = {
+            {.name = "upload", .uses = {{.port = "rays", .access = Access::Copy, .write = true}}}};
         declaration.depends = Causes::Frame;
         return declaration;
     }

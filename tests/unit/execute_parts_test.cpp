@@ -1,6 +1,6 @@
 #include "execute/finite.h"
 #include "execute/resources.h"
-#include "execute/step_bindings.h"
+#include "graph/glsl_names.h"
 #include <gtest/gtest.h>
 #include <limits>
 

@@ -40,7 +40,7 @@ std::string mistake(const Declare& declare, const CompileOptions& options = {}) 
 "edges": [["s.a", "p.x"],
 ["s.buffer", "p.buffer"],
 ["s.tracer", "p.tracer"]], "outputs": ["p.r"]})";
-    return messageOf([&] { compileText(text, registry, options); });
+    return messageOf<Error>([&] { compileText(text, registry, options); });
 }
 
 // A correct declaration, changed by `spoil`.

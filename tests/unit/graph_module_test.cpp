@@ -1,4 +1,5 @@
 // Modules: names, defines, inherited uses, what is provided and requested.
+#include "graph/glsl_names.h"
 #include "graph/network.h"
 #include "graph_mock.h"
 #include <gmock/gmock.h>
@@ -11,7 +12,6 @@ using namespace test;
 using testing::ElementsAre;
 
 TEST(GlslName, FollowsTheRule) {
-    using compiler::glslName;
     const auto name = [](const std::string& prefix, Access access, bool previous = false,
                          bool beside = false) {
         Use use = reads("ray_buffer", access);
@@ -138,7 +138,9 @@ TEST(Modules, TwoTracersNestedInAConsumer) {
                 ElementsAre("r=ao.r", "tracer_Block=both.block", "tracer_near_depth=gbuffer.depth",
                             "tracer_far_maps=roma.maps", "tracer_far_Map=map.map"));
     EXPECT_EQ(trace.bindings[0].port, "r");
-    EXPECT_EQ(trace.bindings[3].port, "");
+    EXPECT_EQ(trace.bindings[3].port, "maps");
+    EXPECT_EQ(trace.bindings[0].path, "");
+    EXPECT_EQ(trace.bindings[3].path, "tracer_far_");
 
     const ProgramRequest& program = plan.programs[static_cast<size_t>(trace.program)];
     const ModuleInstance& both = program.modules.at("tracer");
@@ -170,9 +172,13 @@ TEST(Modules, TwoTracersNestedInAConsumer) {
     // The maps (image) and the map (storage) were made visible by barriers of steps before.
     EXPECT_EQ(trace.barrier, Barrier::TextureFetch);
 
-    std::vector<std::string> views;
-    for (const PlanView& view : trace.views) views.push_back(view.name);
-    EXPECT_THAT(views, ElementsAre("RView", "tracer_near_DepthView"));
+    std::map<std::string, const PlanView*> views;
+    for (const PlanView& view : trace.views) views.emplace(view.name, &view);
+    ASSERT_TRUE(views.contains("RView") && views.contains("tracer_near_PreviousDepthView"));
+    ASSERT_TRUE(views.contains("tracer_near_DepthView"));
+    EXPECT_EQ(plan.resources[static_cast<size_t>(views.at("tracer_near_DepthView")->resource)].port.text(),
+              "gbuffer.depth");
+    EXPECT_TRUE(views.at("tracer_near_PreviousDepthView")->previous);
 }
 
 TEST(Modules, TheUnionOfWhatConsumersTakeReachesTheProvider) {
