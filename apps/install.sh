@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of apps/packages.txt that are missing, saying which. Usage: apps/install.sh [test]
+# Installs the Debian packages of apps/packages.txt that are missing, saying which. Usage: apps/install.sh [test | stage]
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 needs='required|optional'
 [ "${1:-}" = test ] && needs='required|optional|test'
+[ "${1:-}" = stage ] && needs='required|optional|test|stage'
 
 missing=()
 while read -r package need _; do

@@ -1,10 +1,72 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs every test. Arguments go to ctest: tests/run.sh -L unit
+#
+# tests/run.sh --stage NAME [CTEST ARGUMENT]... runs one of the further stages instead:
+#   format     every C++ file stands as .clang-format has it
+#   sanitize   the tests that need no GL, under the address and undefined-behaviour sanitizers
+#   strict     file by file, without precompiled headers, in the debug build that counts the iterations of shaders' loops
+#   tidy       clang-tidy over framework/ and passes/, by .clang-tidy (after strict)
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
-export KESTREL_BUILD=${KESTREL_BUILD:-$root/build}
-"$root/apps/build.sh" test
+stage=tests
+if [ "${1:-}" = --stage ]; then
+    stage=${2:?--stage needs a name}
+    shift 2
+fi
+sources() { git -C "$root" ls-files '*.cpp' '*.h' | grep -v '^shaders/'; }
+
+# build FOLDER CMAKE_ARGUMENT... [-- TARGET...]: the build of a stage beside the usual one.
+build() {
+    local folder=$1
+    shift
+    local arguments=() targets=()
+    while [ $# -gt 0 ] && [ "$1" != -- ]; do arguments+=("$1") && shift; done
+    [ $# -gt 0 ] && shift && targets=(--target "$@")
+    "$root/apps/install.sh" test
+    cmake -S "$root" -B "$folder" -G Ninja -DKESTREL_TESTS=ON "${arguments[@]}" >/dev/null
+    cmake --build "$folder" "${targets[@]}"
+}
+
 # Mesa's own cache of compiled shaders makes the second run of a test start fifty times faster.
-export MESA_SHADER_CACHE_DIR=${MESA_SHADER_CACHE_DIR:-$KESTREL_BUILD/shader-cache}
-mkdir -p "$MESA_SHADER_CACHE_DIR"
-exec ctest --test-dir "$KESTREL_BUILD" --output-on-failure -j "$(nproc)" "$@"
+run() {
+    local folder=$1
+    shift
+    export MESA_SHADER_CACHE_DIR=${MESA_SHADER_CACHE_DIR:-$folder/shader-cache}
+    mkdir -p "$MESA_SHADER_CACHE_DIR"
+    ctest --test-dir "$folder" --output-on-failure -j "$(nproc)" "$@"
+}
+
+case "$stage" in
+tests)
+    export KESTREL_BUILD=${KESTREL_BUILD:-$root/build}
+    "$root/apps/build.sh" test
+    run "$KESTREL_BUILD" "$@"
+    ;;
+format)
+    "$root/apps/install.sh" stage
+    cd "$root"
+    sources | xargs clang-format --dry-run -Werror
+    echo "$(sources | wc -l) files stand as .clang-format has them"
+    ;;
+sanitize)
+    # What needs no GL: one program a folder of the framework. The packaged libraries are not instrumented.
+    tests=(core image scene reference shader graph draw execute measure)
+    build "$root/build-sanitize" -DKESTREL_CONFIG=sanitize -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -- "${tests[@]/#/test_}"
+    for test in "${tests[@]}"; do
+        UBSAN_OPTIONS=print_stacktrace=1 "$root/build-sanitize/bin/test_$test" --gtest_brief=1 "$@"
+    done
+    ;;
+strict)
+    build "$root/build-strict" -DKESTREL_CONFIG=debug -DKESTREL_UNITY=OFF -DKESTREL_PCH=OFF
+    run "$root/build-strict" "$@"
+    ;;
+tidy)
+    "$root/apps/install.sh" stage
+    cd "$root"
+    git ls-files 'framework/*.cpp' 'passes/*.cpp' | xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p "$root/build-strict"
+    ;;
+*)
+    echo "tests/run.sh: there is no stage '$stage': format, sanitize, strict, tidy" >&2
+    exit 2
+    ;;
+esac

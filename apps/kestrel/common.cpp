@@ -15,7 +15,8 @@ void addGraphArguments(CLI::App& command, GraphArguments& arguments) {
         "Scene: a .gltf or .glb file, or builtin:NAME (see 'kestrel scene list'); default: the "
         "graph's");
     command.add_option("--camera,-c", arguments.camera,
-                       "Camera of the scene by its name; default: the graph's, else the first");
+                       "Camera of the scene by its name or its number, from 0 (see 'kestrel scene info'); "
+                       "default: the graph's, else the first");
     command.add_option("--size", arguments.size, "Size of the frame in pixels, WIDTHxHEIGHT")
         ->capture_default_str();
     command
@@ -24,6 +25,12 @@ void addGraphArguments(CLI::App& command, GraphArguments& arguments) {
             "Changes the graph: pass.property=value, or pass.input=pass.output to move an edge; may be "
             "given several times")
         ->allow_extra_args(false);
+    addAllowOutside(command, arguments.sceneOptions.allowOutside);
+}
+
+void addAllowOutside(CLI::App& command, bool& allowOutside) {
+    command.add_flag("--allow-outside", allowOutside,
+                     "Let a scene file name buffers and images outside its folder");
 }
 
 const Registry& loadedRegistry() {
@@ -51,16 +58,16 @@ Graph openGraph(const GraphArguments& arguments, const Registry& registry) {
 }
 
 Scene openScene(const GraphArguments& arguments, const Graph& graph) {
-    if (!arguments.scene.empty()) return openScene(arguments.scene);
+    if (!arguments.scene.empty()) return openScene(arguments.scene, arguments.sceneOptions);
     if (graph.sceneSource.empty())
         throw InputError(Location{arguments.graph}, "the graph names no scene: give one with --scene");
-    Scene scene = loadScene(graph.sceneSource, graph.file.parent_path());
+    Scene scene = loadScene(graph.sceneSource, graph.file.parent_path(), arguments.sceneOptions);
     for (const std::string& warning : scene.warnings) logWarning("{}: {}", scene.name, warning);
     return scene;
 }
 
-Scene openScene(const std::string& source) {
-    Scene scene = loadScene(source);
+Scene openScene(const std::string& source, const SceneOptions& options) {
+    Scene scene = loadScene(source, {}, options);
     for (const std::string& warning : scene.warnings) logWarning("{}: {}", scene.name, warning);
     return scene;
 }

@@ -60,8 +60,8 @@ Json factsJson(const SceneFacts& f) {
             {"radius", f.sphere.radius}};
 }
 
-int tellScene(const std::string& source, bool json) {
-    const Scene scene = openScene(source);
+int tellScene(const std::string& source, const SceneOptions& options, bool json) {
+    const Scene scene = openScene(source, options);
     const SceneFacts facts = gatherFacts(scene);
     std::vector<std::string> cameras;
     for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
@@ -77,10 +77,10 @@ int tellScene(const std::string& source, bool json) {
     return 0;
 }
 
-int exportTo(const std::string& source, const std::string& file) {
+int exportTo(const std::string& source, const SceneOptions& options, const std::string& file) {
     if (std::filesystem::path(file).extension() != ".glb")
         throw InputError(fmt::format("{}: scenes are written as .glb", file));
-    exportScene(openScene(source), file);
+    exportScene(openScene(source, options), file);
     fmt::print("{}\n", file);
     return 0;
 }
@@ -90,6 +90,7 @@ int exportTo(const std::string& source, const std::string& file) {
 void addSceneCommand(CLI::App& app, Run& run) {
     struct Arguments {
         std::string source, file;
+        SceneOptions options;
         bool json = false;
     };
     const auto arguments = std::make_shared<Arguments>();
@@ -105,14 +106,18 @@ void addSceneCommand(CLI::App& app, Run& run) {
     CLI::App* info = scene->add_subcommand("info", "Tell what holds for a scene over its whole timeline");
     info->add_option("SCENE", arguments->source, sourceHelp)->required();
     info->add_flag("--json", arguments->json, "Print JSON");
-    info->callback(
-        [arguments, &run] { run = [arguments] { return tellScene(arguments->source, arguments->json); }; });
+    addAllowOutside(*info, arguments->options.allowOutside);
+    info->callback([arguments, &run] {
+        run = [arguments] { return tellScene(arguments->source, arguments->options, arguments->json); };
+    });
 
     CLI::App* exported = scene->add_subcommand("export", "Write a scene as .glb");
     exported->add_option("SCENE", arguments->source, sourceHelp)->required();
     exported->add_option("FILE", arguments->file, "The .glb file to write")->required();
-    exported->callback(
-        [arguments, &run] { run = [arguments] { return exportTo(arguments->source, arguments->file); }; });
+    addAllowOutside(*exported, arguments->options.allowOutside);
+    exported->callback([arguments, &run] {
+        run = [arguments] { return exportTo(arguments->source, arguments->options, arguments->file); };
+    });
     scene->footer(
         "Built-in scenes have three properties, as in 'builtin:tower?detail=0.1&split=4' (in quotes: '?' "
         "and\n"

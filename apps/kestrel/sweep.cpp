@@ -19,16 +19,23 @@ namespace kestrel {
 namespace {
 
 struct SweepArguments {
-    std::string file, folder, shard, only, size, backend = "egl";
+    std::string file, folder, shard, only, size, markdown, backend = "egl";
     std::vector<std::string> merge;
     int frames = 0;
-    bool resume = false, list = false, json = false, schema = false;
+    bool resume = false, list = false, json = false, schema = false, allowOutside = false;
 };
 
 Sweep openSweep(const SweepArguments& arguments) {
     Sweep sweep = loadSweep(arguments.file);
-    if (!arguments.size.empty()) sweep.size = parseSize(arguments.size);
-    if (arguments.frames > 0) sweep.frames = arguments.frames;
+    if (!arguments.size.empty()) {
+        sweep.size = parseSize(arguments.size);
+        sweep.sizeGiven = true;
+    }
+    if (arguments.frames > 0) {
+        sweep.frames = arguments.frames;
+        sweep.framesGiven = true;
+    }
+    sweep.allowOutside = arguments.allowOutside;
     return sweep;
 }
 
@@ -113,9 +120,13 @@ int merge(const Sweep& sweep, const SweepArguments& arguments, const std::vector
     return finish(sweep, folder, points, units, arguments.json);
 }
 
-int sweepCommand(const SweepArguments& arguments) {
+int runSweepCommand(const SweepArguments& arguments) {
     if (arguments.schema) {
         fmt::print("{}", sweepSchema());
+        return static_cast<int>(ExitStatus::Done);
+    }
+    if (!arguments.markdown.empty()) {
+        fmt::print("{}", resultsMarkdown(readText(arguments.markdown), arguments.markdown));
         return static_cast<int>(ExitStatus::Done);
     }
     if (arguments.file.empty()) throw InputError("FILE is missing: the sweep file");
@@ -133,6 +144,7 @@ int sweepCommand(const SweepArguments& arguments) {
     }
     if (arguments.folder.empty()) throw InputError("--out is missing: the folder that the results go into");
     if (!arguments.merge.empty()) return merge(sweep, arguments, points, units);
+    checkSweepScenes(sweep);
     if (static_cast<size_t>(options.shard.count) > units.size())
         logInfo("{} shards, but only {} plots to share out: some have nothing to do", options.shard.count,
                 units.size());
@@ -157,8 +169,12 @@ void addSweepCommand(CLI::App& app, Run& run) {
     const auto arguments = std::make_shared<SweepArguments>();
     command->add_option("FILE", arguments->file, "Sweep file (.json): scenes, the reference, variants");
     command->add_flag("--schema", arguments->schema, "Print the JSON schema of sweep files");
-    command->add_option("--out,-o", arguments->folder, "Folder for results.json, results.csv, index.html");
-    command->add_flag("--resume", arguments->resume, "Go on with what the folder holds");
+    command->add_option("--out,-o", arguments->folder,
+                        "Folder for results.json, results.csv, results.md, index.html");
+    command->add_flag("--resume", arguments->resume,
+                      "Go on with what the folder holds; what the sweep has gained since joins it");
+    command->add_option("--markdown", arguments->markdown,
+                        "Print the tables of this results.json as Markdown, and measure nothing");
     command->add_option(
         "--shard", arguments->shard,
         "I/N: measure every N-th plot only, from the I-th; a plot is a scene with all its variants, "
@@ -174,6 +190,7 @@ void addSweepCommand(CLI::App& app, Run& run) {
     command->add_option("--frames,-n", arguments->frames, "Frames before the picture instead of the file's")
         ->check(CLI::Range(1, 100'000));
     command->add_flag("--json", arguments->json, "Print the results as JSON");
+    addAllowOutside(*command, arguments->allowOutside);
     command->add_option("--backend", arguments->backend, "egl, osmesa or window")->capture_default_str();
     command->footer("Each finished measurement is kept at once: after any stop, --resume goes on.\n"
                     "Examples:\n"
@@ -181,8 +198,9 @@ void addSweepCommand(CLI::App& app, Run& run) {
                     "  kestrel sweep graphs/sweeps/snap.json --out results --resume\n"
                     "  parallel kestrel sweep FILE --shard {}/4 --out shard{} ::: 1 2 3 4\n"
                     "  kestrel sweep FILE --out results --merge shard1 shard2 shard3 shard4\n"
+                    "  kestrel sweep --markdown results/results.json\n"
                     "  kestrel sweep --schema > graphs/sweeps/schema.json");
-    command->callback([arguments, &run] { run = [arguments] { return sweepCommand(*arguments); }; });
+    command->callback([arguments, &run] { run = [arguments] { return runSweepCommand(*arguments); }; });
 }
 
 } // namespace kestrel

@@ -8,7 +8,8 @@ namespace kestrel {
 
 enum class Compare : std::uint8_t { Always, Greater, GreaterEqual, Equal, Less };
 enum class Cull : std::uint8_t { None, Back, Front };
-enum class Blend : std::uint8_t { None, Add, Over };
+// Min and Max: of each channel the smaller or the larger of what is there and what is drawn.
+enum class Blend : std::uint8_t { None, Add, Over, Min, Max };
 
 struct DrawState {
     Compare depth = Compare::Greater; // depth is reversed: nearer is greater

@@ -29,6 +29,7 @@ GLenum compareEnum(Compare compare) {
 
 void applyBlend(Blend blend) {
     enable(GL_BLEND, blend != Blend::None);
+    glBlendEquation(blend == Blend::Min ? GL_MIN : blend == Blend::Max ? GL_MAX : GL_FUNC_ADD);
     if (blend == Blend::Add) glBlendFunc(GL_ONE, GL_ONE);
     // Colours premultiplied by alpha.
     if (blend == Blend::Over) glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -66,6 +67,16 @@ void drawVertices(const DrawState& state, const gl::VertexArray& noVertices, std
     glBindVertexArray(noVertices.name());
     if (count == 0 || instances == 0) return;
     glDrawArraysInstanced(GL_TRIANGLES, 0, static_cast<GLsizei>(count), static_cast<GLsizei>(instances));
+}
+
+void drawVerticesIndirect(const DrawState& state, const gl::VertexArray& noVertices,
+                          const gl::Buffer& commands, std::uint64_t offset) {
+    applyDrawState(state);
+    setCulling(state.cull);
+    glBindVertexArray(noVertices.name());
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.name());
+    glDrawArraysIndirect(GL_TRIANGLES, reinterpret_cast<const void*>(commands.offset() + offset));
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
 }
 
 } // namespace kestrel

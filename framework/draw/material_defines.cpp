@@ -9,6 +9,7 @@ Defines materialDefines(const SceneFacts& facts) {
         defines["MATERIAL_TEXTURES"] = "1";
         defines["MATERIAL_COLOUR_ARRAYS"] = std::to_string(facts.colourTextureArrays);
         defines["MATERIAL_DATA_ARRAYS"] = std::to_string(facts.dataTextureArrays);
+        if (facts.hasTiledTextures) defines["MATERIAL_TILED"] = "1";
         if (facts.hasNormalMaps) defines["MATERIAL_NORMAL_MAPS"] = "1";
     }
     if (facts.hasMasked) defines["MATERIAL_MASKED"] = "1";
@@ -21,6 +22,7 @@ std::map<std::string, std::vector<std::string>> materialDefineChoices() {
     return {{"MATERIAL_TEXTURES", {"1"}},
             {"MATERIAL_COLOUR_ARRAYS", {"0", "1", "4"}},
             {"MATERIAL_DATA_ARRAYS", {"0", "1", "4"}},
+            {"MATERIAL_TILED", present},
             {"MATERIAL_NORMAL_MAPS", present},
             {"MATERIAL_MASKED", present},
             {"MATERIAL_COLOURS", present}};

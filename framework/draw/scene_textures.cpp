@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "draw/resample.h"
+#include "gl/debug_output.h"
 #include "gl/loader.h"
 #include <algorithm>
 #include <bit>
@@ -13,13 +14,10 @@ namespace {
 
 using shared::TextureRecord;
 
+const char* nameOf(TextureRole role) { return role == TextureRole::Colour ? "colour" : "data"; }
+
+// Nothing where the device has not the memory.
 gl::Handle<gl::deleteTexture> makeArray(std::uint32_t side, size_t layers, TextureRole role) {
-    GLint most = 0;
-    glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &most);
-    if (layers > static_cast<size_t>(most))
-        throw MachineError(
-            fmt::format("the scene has {} textures of {}x{} texels, the device takes {} layers", layers, side,
-                        side, most));
     gl::Name name = 0;
     glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &name);
     gl::Handle<gl::deleteTexture> handle(name);
@@ -32,11 +30,8 @@ gl::Handle<gl::deleteTexture> makeArray(std::uint32_t side, size_t layers, Textu
                            static_cast<GLsizei>(layers));
         error = expect.take();
     }
-    if (error != GL_NO_ERROR)
-        throw MachineError(fmt::format("no memory for {} textures of {}x{} texels (GL error 0x{:x})", layers,
-                                       side, side, error));
-    const std::string label = fmt::format("scene {} {}", colour ? "colour" : "data", side);
-    glObjectLabel(GL_TEXTURE, name, static_cast<GLsizei>(label.size()), label.c_str());
+    if (error != GL_NO_ERROR) return {};
+    gl::setLabel(GL_TEXTURE, name, fmt::format("scene {} {}", nameOf(role), side));
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_REPEAT);
@@ -44,10 +39,29 @@ gl::Handle<gl::deleteTexture> makeArray(std::uint32_t side, size_t layers, Textu
     return handle;
 }
 
-void uploadLayer(gl::Name array, size_t layer, std::uint32_t side, const std::vector<std::uint8_t>& texels) {
+void uploadSquare(gl::Name array, const TextureArrays::Place& place, std::uint32_t side,
+                  const std::vector<std::uint8_t>& texels) {
     const auto size = static_cast<GLsizei>(side);
-    glTextureSubImage3D(array, 0, 0, 0, static_cast<GLint>(layer), size, size, 1, GL_RGBA, GL_UNSIGNED_BYTE,
-                        texels.data());
+    glTextureSubImage3D(array, 0, static_cast<GLint>(place.x), static_cast<GLint>(place.y), place.layer, size,
+                        size, 1, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+}
+
+// A full pyramid has a third more texels than its base.
+std::uint64_t bytesOf(const TextureArrays& layout) {
+    std::uint64_t bytes = 0;
+    for (const TextureArrays::Array& array : layout.arrays)
+        bytes += std::uint64_t{4} * array.layerSide() * array.layerSide() * array.layers() * 4 / 3;
+    return bytes;
+}
+
+// Empty where the device has not the memory.
+std::vector<gl::Handle<gl::deleteTexture>> makeArrays(const TextureArrays& layout, TextureRole role) {
+    std::vector<gl::Handle<gl::deleteTexture>> arrays;
+    for (const TextureArrays::Array& array : layout.arrays) {
+        arrays.push_back(makeArray(array.layerSide(), array.layers(), role));
+        if (!arrays.back()) return {};
+    }
+    return arrays;
 }
 
 // Images that some material of this role reads without a filter.
@@ -80,27 +94,46 @@ std::uint32_t wrapCode(Wrap wrap) {
 
 SceneTextures::SceneTextures(const Scene& scene, TextureRole role)
     : layout_(textureArrays(scene, role)) {
-    const std::vector<bool> nearest = unfiltered(scene, role);
-    for (const TextureArrays::Array& array : layout_.arrays) {
-        auto made = makeArray(array.side, array.images.size(), role);
-        for (size_t layer = 0; layer < array.images.size(); ++layer) {
-            const auto index = static_cast<size_t>(array.images[layer]);
-            const TextureImage& image = scene.images[index];
-            if (std::max(image.width, image.height) > static_cast<int>(array.side))
-                logWarning("image '{}' of {}x{} is reduced to {} texels a side", image.name, image.width,
-                           image.height, array.side);
-            uploadLayer(made.get(), layer, array.side,
-                        resampleToSquare(image, array.side, role == TextureRole::Colour,
-                                         nearest[index] ? ResampleFilter::Nearest : ResampleFilter::Smooth));
-        }
-        glGenerateTextureMipmap(made.get());
-        // A full pyramid has a third more texels than its base.
-        bytes_ += std::uint64_t{4} * array.side * array.side * array.images.size() * 4 / 3;
-        arrays_.push_back(std::move(made));
+    if (layout_.side < maxTextureSide)
+        logWarning("the {} textures take {} texels, at most {} are kept: they are reduced to {} a side",
+                   nameOf(role), layout_.wantedTexels, TextureLimits{}.texels, layout_.side);
+    const bool tiled = layout_.tiled();
+    arrays_ = makeArrays(layout_, role);
+    while (arrays_.size() < layout_.arrays.size()) {
+        const std::uint64_t wanted = bytesOf(layout_);
+        layout_ = textureArrays(scene, role, {.side = layout_.side / 2});
+        // Shaders are compiled for the first layout.
+        if (layout_.side < 64 || layout_.tiled() != tiled)
+            throw MachineError(fmt::format("no memory for the {} textures of the scene: they take {} bytes",
+                                           nameOf(role), wanted));
+        logWarning(
+            "the device has no memory for {} textures of {} bytes: they are reduced to {} texels a side",
+            nameOf(role), wanted, layout_.side);
+        arrays_ = makeArrays(layout_, role);
     }
-    if (arrays_.empty()) {
-        arrays_.push_back(makeArray(1, 1, role));
-        uploadLayer(arrays_.back().get(), 0, 1, {255, 255, 255, 255});
+    upload(scene, role);
+    bytes_ = layout_.arrays.empty() ? 0 : bytesOf(layout_);
+    if (!arrays_.empty()) return;
+    arrays_.push_back(makeArray(1, 1, role));
+    uploadSquare(arrays_.back().get(), {0, 0}, 1, {255, 255, 255, 255});
+}
+
+void SceneTextures::upload(const Scene& scene, TextureRole role) {
+    const std::vector<bool> nearest = unfiltered(scene, role);
+    for (size_t i = 0; i < arrays_.size(); ++i) {
+        const TextureArrays::Array& array = layout_.arrays[i];
+        for (const int image : array.images) {
+            const auto index = static_cast<size_t>(image);
+            const TextureImage& source = scene.images[index];
+            if (std::max(source.width, source.height) > static_cast<int>(array.side) &&
+                layout_.side == maxTextureSide)
+                logWarning("image '{}' of {}x{} is reduced to {} texels a side", source.name, source.width,
+                           source.height, array.side);
+            uploadSquare(arrays_[i].get(), layout_.places[index], array.side,
+                         resampleToSquare(source, array.side, role == TextureRole::Colour,
+                                          nearest[index] ? ResampleFilter::Nearest : ResampleFilter::Smooth));
+        }
+        glGenerateTextureMipmap(arrays_[i].get());
     }
 }
 
@@ -129,6 +162,7 @@ TextureRecord SceneTextures::record(const Scene& scene, const TextureRef& refere
     record.source = {static_cast<std::uint32_t>(std::max(image.width, 1)),
                      static_cast<std::uint32_t>(std::max(image.height, 1))};
     record.side = layout_.arrays[static_cast<size_t>(place.array)].side;
+    record.corner = place.x | place.y << 16;
     return record;
 }
 

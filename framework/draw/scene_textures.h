@@ -9,8 +9,8 @@ namespace kestrel {
 // All images of one role: sRGB8 with alpha for colours, RGBA8 for data; all mip levels.
 class SceneTextures {
 public:
-    // Throws MachineError naming need and limit where there are more layers than the device has, or no
-    // memory.
+    // Where the images take more than TextureLimits, or than the device can give, they are reduced with a
+    // warning that names figure and limit. Throws MachineError where there is no memory even so.
     SceneTextures(const Scene& scene, TextureRole role);
 
     // The record of a material's texture; `place` is noTexture where there is none.
@@ -20,6 +20,8 @@ public:
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
 private:
+    void upload(const Scene& scene, TextureRole role);
+
     TextureArrays layout_;
     std::vector<gl::Handle<gl::deleteTexture>> arrays_;
     std::uint64_t bytes_ = 0;

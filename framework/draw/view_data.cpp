@@ -1,5 +1,9 @@
 #include "draw/view_data.h"
 #include "core/check.h"
+#include "core/error.h"
+#include "draw/light_faces.h"
+#include <fmt/format.h>
+#include <numbers>
 
 namespace kestrel {
 
@@ -54,7 +58,50 @@ void fillWays(ViewData& data, const glm::dmat4& inverseView, const glm::dmat4& i
     data.ahead = glm::vec4(ahead, inverseProjection[3][3]);
 }
 
+CameraState cubeCamera(const CubeView& cube, const glm::vec3& eye) {
+    // Ahead and up of each face; right is their cross product.
+    constexpr glm::vec3 ahead[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    constexpr glm::vec3 above[] = {{0, 1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}, {0, 1, 0}, {0, 1, 0}};
+    KESTREL_CHECK(cube.face >= 0 && cube.face < 6);
+    const glm::vec3 forward = ahead[cube.face], up = above[cube.face];
+    const glm::vec3 rows[] = {glm::cross(forward, up), up, -forward};
+    CameraState camera;
+    camera.position = cube.point.value_or(eye);
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) camera.view[column][row] = rows[row][column];
+        camera.view[3][row] = -glm::dot(rows[row], camera.position);
+    }
+    camera.verticalFov = std::numbers::pi_v<float> / 2;
+    camera.nearPlane = cube.nearPlane;
+    camera.farPlane = cube.farPlane;
+    return camera;
+}
+
+CameraState sceneCamera(const CameraView& view, const ViewMoment& moment) {
+    KESTREL_CHECK(moment.scene != nullptr);
+    const Scene& scene = *moment.scene;
+    const int camera = view.name.empty() ? view.camera : cameraIndex(scene, view.name);
+    if (camera < 0 || static_cast<std::size_t>(camera) >= scene.cameras.size())
+        throw InputError(
+            fmt::format("a view looks from camera {}; the scene has {}", camera, scene.cameras.size()));
+    return cameraAt(scene, camera, moment.time);
+}
+
+CameraState lightCameraOf(const LightView& view, const ViewMoment& moment) {
+    const std::size_t count = moment.lights == nullptr ? 0 : moment.lights->size();
+    if (view.light < 0 || static_cast<std::size_t>(view.light) >= count)
+        throw InputError(fmt::format("a view looks from light {}; the scene has {}", view.light, count));
+    return lightCamera((*moment.lights)[static_cast<std::size_t>(view.light)], view.face, moment.bounds);
+}
+
 } // namespace
+
+CameraState cameraOf(const View& view, const ViewMoment& moment) {
+    if (const auto* of = std::get_if<CameraView>(&view.source)) return sceneCamera(*of, moment);
+    if (const auto* of = std::get_if<CubeView>(&view.source)) return cubeCamera(*of, moment.camera.position);
+    if (const auto* of = std::get_if<LightView>(&view.source)) return lightCameraOf(*of, moment);
+    return moment.camera;
+}
 
 glm::vec2 jitterOf(std::uint32_t index) {
     const std::uint32_t point = index % jitterPeriod + 1;
@@ -65,6 +112,7 @@ glm::vec2 jitterOf(std::uint32_t index) {
 ViewData viewData(const View& view, const Extent& extent, const ViewFrame& frame) {
     KESTREL_CHECK(view.divisor >= 1 && view.guard >= 0);
     KESTREL_CHECK(extent.width >= 1 && extent.height >= 1 && frame.size.width >= 1 && frame.size.height >= 1);
+    const Extent whole = sizeOf(view, frame.size);
     const int guard = view.guard / view.divisor;
     const glm::dvec2 first(-double(guard) * view.divisor);
     const glm::dvec2 size = glm::dvec2(extent.width, extent.height) * double(view.divisor);
@@ -73,7 +121,7 @@ ViewData viewData(const View& view, const Extent& extent, const ViewFrame& frame
     const glm::dmat4 eye(frame.camera.view);
     // A sample that stands jitter pixels right of the centre sees the image moved jitter pixels to the left.
     const glm::dmat4 projection =
-        projectionOver(frame.camera, frame.size, first + glm::dvec2(jitter) * double(view.divisor), size);
+        projectionOver(frame.camera, whole, first + glm::dvec2(jitter) * double(view.divisor), size);
     const glm::dmat4 before(frame.previousCamera.view);
 
     ViewData data{};
@@ -84,7 +132,7 @@ ViewData viewData(const View& view, const Extent& extent, const ViewFrame& frame
     data.inverseProjection = glm::mat4(glm::inverse(projection));
     data.inverseViewProjection = glm::mat4(glm::inverse(projection * eye));
     data.previousViewProjection =
-        glm::mat4(projectionOver(frame.previousCamera, frame.size, first, size) * before);
+        glm::mat4(projectionOver(frame.previousCamera, whole, first, size) * before);
     data.position = glm::vec4(frame.camera.position, frame.camera.orthographic ? 1 : 0);
     data.size = {extent.width, extent.height};
     data.guard = static_cast<std::uint32_t>(guard);

@@ -23,7 +23,7 @@ struct FrameInfo {
     double time = 0; // seconds on the scene's timeline
     Extent size;
     int camera = 0;
-    CameraState cameraState;         // of camera 0 of View
+    CameraState cameraState;         // of views of the frame
     CameraState previousCameraState; // of the last frame; equal if there is none
 };
 
@@ -71,10 +71,20 @@ public:
     // The scene's triangles of the chosen classes; vertex inputs are those of lib/vertex.glsl. The viewport
     // is the attachments' extent, or state.viewport where there is no attachment.
     virtual void drawScene(const DrawState& state, const std::vector<TriangleClass>& classes) = 0;
+    // The same `count` times, each into one layer of every attachment of the step, from layer 0 on:
+    // `perLayer` sets what differs before layer i is drawn. Shaders need not choose the layer; the
+    // attachments must be layered and have as many.
+    virtual void drawSceneLayers(const DrawState& state, const std::vector<TriangleClass>& classes,
+                                 std::uint32_t count,
+                                 const std::function<void(std::uint32_t layer)>& perLayer) = 0;
     // One triangle that covers the target.
     virtual void drawFullscreen(const DrawState& state = DrawState::overwrite()) = 0;
     // `count` vertices without attributes (gl_VertexID), as triangles.
     virtual void drawVertices(const DrawState& state, std::uint32_t count, std::uint32_t instances = 1) = 0;
+    // As many as a buffer port says at a byte offset (declare the use as Access::Indirect): vertices,
+    // instances, first vertex, first instance.
+    virtual void drawVerticesIndirect(const DrawState& state, std::string_view port,
+                                      std::uint64_t offset = 0) = 0;
 
     // ---- data
     virtual void upload(std::string_view port, std::span<const std::byte> bytes,

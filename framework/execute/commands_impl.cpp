@@ -1,6 +1,7 @@
 #include "execute/commands_impl.h"
 #include "core/check.h"
 #include "draw/draw_calls.h"
+#include "draw/draw_layers.h"
 #include "draw/gpu_scene.h"
 #include "gl/loader.h"
 #include <algorithm>
@@ -132,6 +133,23 @@ void StepCommands::drawScene(const DrawState& state, const std::vector<TriangleC
     context_.frame.gpu->draw(state, classes, program());
 }
 
+void StepCommands::drawSceneLayers(const DrawState& state, const std::vector<TriangleClass>& classes,
+                                   std::uint32_t count,
+                                   const std::function<void(std::uint32_t layer)>& perLayer) {
+    static_cast<void>(program());
+    if (context_.target.empty()) fail("a draw of layers needs attachments");
+    for (const gl::Attachment* attachment : context_.target.attachments()) {
+        const std::uint32_t layers = attachment->layer < 0 ? attachment->texture->layers(attachment->mip) : 1;
+        if (count > layers)
+            fail(fmt::format("a draw of {} layers into {}, of which {} are attached", count,
+                             describe(attachment->texture->desc()), layers));
+    }
+    eachLayer(context_.framebuffers, context_.target, count, [&](std::uint32_t layer) {
+        perLayer(layer);
+        context_.frame.gpu->draw(state, classes, program());
+    });
+}
+
 void StepCommands::drawFullscreen(const DrawState& state) {
     beginDraw(state);
     kestrel::drawFullscreen(state, context_.noVertices);
@@ -140,6 +158,14 @@ void StepCommands::drawFullscreen(const DrawState& state) {
 void StepCommands::drawVertices(const DrawState& state, std::uint32_t count, std::uint32_t instances) {
     beginDraw(state);
     kestrel::drawVertices(state, context_.noVertices, count, instances);
+}
+
+void StepCommands::drawVerticesIndirect(const DrawState& state, std::string_view port, std::uint64_t offset) {
+    const gl::Buffer& counts = bufferOf(port);
+    if (offset % 4 != 0 || offset + 16 > counts.bytes())
+        fail(fmt::format("an indirect draw at byte {} of '{}', which has {}", offset, port, counts.bytes()));
+    beginDraw(state);
+    kestrel::drawVerticesIndirect(state, context_.noVertices, counts, offset);
 }
 
 // ---- data

@@ -21,6 +21,9 @@ struct FrameScene {
     const Geometry* geometry = nullptr;
     const std::vector<LightState>* lights = nullptr;
     GpuScene* gpu = nullptr;
+    // Of the last frame; as now if there is none.
+    double previousTime = 0;
+    const std::vector<LightState>* previousLights = nullptr;
 };
 
 // What the steps of a frame tell the executor.
@@ -41,6 +44,7 @@ public:
         Resources& resources;
         gl::FramebufferCache& framebuffers;
         const gl::VertexArray& noVertices; // without attributes
+        const gl::Target& target;          // the step's attachments
         FrameReport& report;
     };
     // `targetSize` is the extent of the attachments, if there are any.
@@ -73,8 +77,12 @@ public:
     void dispatchOver(std::uint32_t x, std::uint32_t y, std::uint32_t z) override;
     void dispatchIndirect(std::string_view port, std::uint64_t offset) override;
     void drawScene(const DrawState& state, const std::vector<TriangleClass>& classes) override;
+    void drawSceneLayers(const DrawState& state, const std::vector<TriangleClass>& classes,
+                         std::uint32_t count,
+                         const std::function<void(std::uint32_t layer)>& perLayer) override;
     void drawFullscreen(const DrawState& state) override;
     void drawVertices(const DrawState& state, std::uint32_t count, std::uint32_t instances) override;
+    void drawVerticesIndirect(const DrawState& state, std::string_view port, std::uint64_t offset) override;
 
     void upload(std::string_view port, std::span<const std::byte> bytes, std::uint64_t offset) override;
     void uploadImage(std::string_view port, const Image& image) override;

@@ -1,6 +1,7 @@
 #include "execute/executor.h"
 #include "core/check.h"
 #include "draw/gpu_scene.h"
+#include "gl/debug_output.h"
 #include "gl/loader.h"
 #include "graph/guard.h"
 #include "shader/iterations.h"
@@ -14,12 +15,19 @@ namespace kestrel {
 
 namespace {
 
+// What views look from in this frame and in the last one.
+FrameViews viewsOf(const FrameScene& frame) {
+    const Sphere bounds = frame.facts != nullptr ? frame.facts->sphere : Sphere{};
+    const std::vector<LightState>* before = frame.previousLights;
+    return {frame.info,
+            {frame.scene, frame.info.time, frame.lights, bounds, frame.info.cameraState},
+            {frame.scene, frame.previousTime, before != nullptr ? before : frame.lights, bounds,
+             frame.info.previousCameraState}};
+}
+
 class DebugGroup {
 public:
-    DebugGroup(int id, const std::string& label) {
-        glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, static_cast<GLuint>(id),
-                         static_cast<GLsizei>(label.size()), label.c_str());
-    }
+    DebugGroup(int id, const std::string& label) { gl::pushDebugGroup(static_cast<unsigned int>(id), label); }
     ~DebugGroup() { glPopDebugGroup(); }
     DebugGroup(const DebugGroup&) = delete;
     DebugGroup& operator=(const DebugGroup&) = delete;
@@ -128,7 +136,7 @@ bool Executor::runPass(int index, const FrameScene& frame) {
     swapHistories(pass);
     for (const auto& [port, resource] : pass.ports)
         if (resource >= 0 && resources_.info(resource).port.pass == pass.name)
-            views_.produced(resource, frame.info);
+            views_.produced(resource, resources_.info(resource).desc.view, viewsOf(frame));
     for (int step = pass.firstStep; step < pass.firstStep + pass.stepCount; ++step) {
         runStep(step, frame);
         if (report_.overflows.empty()) continue;
@@ -190,10 +198,11 @@ void Executor::runStep(int index, const FrameScene& frame) {
     for (const auto& [from, to] : step.copies) resources_.copy(from, to);
     if (index == pass.firstStep) clearOutputs(pass);
 
-    const std::optional<glm::uvec2> target = bind(index, frame);
+    gl::Target attachments;
+    const std::optional<glm::uvec2> target = bind(index, frame, attachments);
     report_.step = labels_[static_cast<size_t>(index)];
-    const StepCommands::Context context{plan(),     frame,         capabilities_, states_,
-                                        resources_, framebuffers_, noVertices_,   report_};
+    const StepCommands::Context context{plan(),        frame,       capabilities_, states_, resources_,
+                                        framebuffers_, noVertices_, attachments,   report_};
     StepCommands commands(context, index, programs_.of(index), target);
     guarded(pass.name, "step '" + step.step.name + "'", [&] { pass.instance->execute(step.step, commands); });
     restrictMips(step, bindings_[static_cast<size_t>(index)], false);
@@ -214,7 +223,7 @@ void Executor::clearOutputs(const PlanPass& pass) {
 
 // ---- binding
 
-std::optional<glm::uvec2> Executor::bind(int index, const FrameScene& frame) {
+std::optional<glm::uvec2> Executor::bind(int index, const FrameScene& frame, gl::Target& target) {
     const PlanStep& step = plan().steps.at(static_cast<size_t>(index));
     const StepBindings& bindings = bindings_.at(static_cast<size_t>(index));
     restrictMips(step, bindings, true);
@@ -223,14 +232,14 @@ std::optional<glm::uvec2> Executor::bind(int index, const FrameScene& frame) {
         for (const StepBindings::Slot& slot : bindings.slots)
             bindSlot(step.bindings.at(static_cast<size_t>(slot.binding)), slot.where);
         for (const StepBindings::ViewSlot& view : bindings.views)
-            glBindBufferBase(GL_UNIFORM_BUFFER, view.unit, views_.block(view, frame.info));
+            glBindBufferBase(GL_UNIFORM_BUFFER, view.unit, views_.block(view, viewsOf(frame)));
         if (bindings.frame) glBindBufferBase(GL_UNIFORM_BUFFER, *bindings.frame, frameBlock_.name());
         if (bindings.iterations)
             glBindBufferRange(GL_SHADER_STORAGE_BUFFER, *bindings.iterations, iterations_.name(),
                               static_cast<GLintptr>(index) * iterationsStride, sizeof(IterationsBlock));
         if (bindings.scene) frame.gpu->bind(*program->program);
     }
-    return bindTarget(step, bindings);
+    return bindTarget(step, bindings, target);
 }
 
 void Executor::bindSlot(const PlanBinding& binding, const gl::Program::Slot& slot) {
@@ -248,9 +257,10 @@ void Executor::bindSlot(const PlanBinding& binding, const gl::Program::Slot& slo
                       isBuffer ? 0 : samplers_.get({.linear = binding.linear, .mips = desc.mips > 1}));
         break;
     case gl::Program::Slot::Kind::Image: {
-        const bool layered = !isBuffer && desc.kind != ResourceKind::Texture2D;
-        glBindImageTexture(slot.unit, imageName(), std::max(binding.mip, 0), layered ? GL_TRUE : GL_FALSE, 0,
-                           binding.write ? GL_READ_WRITE : GL_READ_ONLY, gl::glFormat(desc.format).internal);
+        const bool layered = !isBuffer && desc.kind != ResourceKind::Texture2D && binding.layer < 0;
+        glBindImageTexture(slot.unit, imageName(), std::max(binding.mip, 0), layered ? GL_TRUE : GL_FALSE,
+                           std::max(binding.layer, 0), binding.write ? GL_READ_WRITE : GL_READ_ONLY,
+                           gl::glFormat(desc.format).internal);
         break;
     }
     case gl::Program::Slot::Kind::UniformBlock:
@@ -262,7 +272,8 @@ void Executor::bindSlot(const PlanBinding& binding, const gl::Program::Slot& slo
     }
 }
 
-std::optional<glm::uvec2> Executor::bindTarget(const PlanStep& step, const StepBindings& bindings) {
+std::optional<glm::uvec2> Executor::bindTarget(const PlanStep& step, const StepBindings& bindings,
+                                               gl::Target& target) {
     if (bindings.colour.empty() && bindings.depth < 0) return std::nullopt;
     glm::uvec2 size(0);
     const auto attachment = [&](int index) {
@@ -271,12 +282,11 @@ std::optional<glm::uvec2> Executor::bindTarget(const PlanStep& step, const StepB
         const int mip = std::max(binding.mip, 0);
         const Extent extent = texture.extentOf(mip);
         size = {extent.width, extent.height};
-        return gl::Attachment{&texture, mip, -1};
+        return gl::Attachment{&texture, mip, binding.layer};
     };
-    std::vector<gl::Attachment> colours;
-    for (const int colour : bindings.colour) colours.push_back(attachment(colour));
-    const gl::Attachment depth = bindings.depth >= 0 ? attachment(bindings.depth) : gl::Attachment{};
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_.get(colours, depth, {size.x, size.y, 1}));
+    for (const int colour : bindings.colour) target.colours.push_back(attachment(colour));
+    if (bindings.depth >= 0) target.depth = attachment(bindings.depth);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_.get(target.colours, target.depth, {size.x, size.y, 1}));
     glViewport(0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y));
     return size;
 }

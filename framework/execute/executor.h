@@ -74,9 +74,11 @@ private:
     void runStep(int index, const FrameScene& frame);
     void swapHistories(const PlanPass& pass);
     void clearOutputs(const PlanPass& pass);
-    std::optional<glm::uvec2> bind(int index, const FrameScene& frame);
+    // `target` becomes what the step draws into; its size is given back.
+    std::optional<glm::uvec2> bind(int index, const FrameScene& frame, gl::Target& target);
     void bindSlot(const PlanBinding& binding, const gl::Program::Slot& slot);
-    std::optional<glm::uvec2> bindTarget(const PlanStep& step, const StepBindings& bindings);
+    std::optional<glm::uvec2> bindTarget(const PlanStep& step, const StepBindings& bindings,
+                                         gl::Target& target);
     // Before a step that reads single levels of a texture, and back after it.
     void restrictMips(const PlanStep& step, const StepBindings& bindings, bool restrict);
     // Reads the counters of the passes that ran since the last reading. False: an output was too small; what

@@ -11,9 +11,9 @@ namespace {
 void addUses(std::string& text, const std::vector<PlanBinding>& bindings, const Plan& plan) {
     for (const PlanBinding& use : bindings) {
         const PlanResource& resource = plan.resources.at(static_cast<size_t>(use.resource));
-        text += fmt::format(" {}={} {} {}{}{}{}{}", use.name, resource.port.text(), describe(resource.desc),
-                            static_cast<int>(use.access), use.write ? 'w' : 'r', use.previous ? 'p' : 'c',
-                            use.linear ? 'l' : 'n', use.mip);
+        text += fmt::format(" {}={} {} {}{}{}{}{}.{}", use.name, resource.port.text(),
+                            describe(resource.desc), static_cast<int>(use.access), use.write ? 'w' : 'r',
+                            use.previous ? 'p' : 'c', use.linear ? 'l' : 'n', use.mip, use.layer);
     }
 }
 

@@ -36,6 +36,11 @@ void requireValid(const Graph& graph, const Registry& registry) {
 
 } // namespace
 
+double timeAfter(double time, double duration) {
+    const double next = time + timeStep;
+    return next <= duration ? next : duration > 0 ? std::fmod(next, duration) : 0;
+}
+
 PassSet reusePasses(const Graph& graph, const Registry& registry, const PassSet& before) {
     PassSet passes = makePasses(graph, registry);
     for (const GraphPass& pass : graph.passes) {
@@ -204,11 +209,8 @@ void Renderer::takeTime() {
         time_ = *jump_;
         jumped_ = time_ != before;
     } else if (moves() && !paused_ && lastConditions_) {
-        time_ += timeStep;
-        if (time_ > facts_.duration) {
-            time_ = std::fmod(time_, facts_.duration);
-            jumped_ = true;
-        }
+        time_ = timeAfter(before, facts_.duration);
+        jumped_ = before + timeStep > facts_.duration;
     }
     jump_.reset();
 }
@@ -277,7 +279,11 @@ const FrameRecord& Renderer::frame() {
     takeGeometry();
     lights_ = lightsAt(scene_, time_);
     gpu_->setLights(lights_);
-    const FrameScene frame{frameInfo(), &scene_, &facts_, geometry_, &lights_, gpu_.get()};
+    FrameScene frame{frameInfo(), &scene_, &facts_, geometry_, &lights_, gpu_.get(), time_, &lights_};
+    if (lastConditions_ && !jumped_) {
+        frame.previousTime = lastConditions_->time;
+        frame.previousLights = &lastConditions_->lights;
+    }
     const FrameConditions now{frame.info.camera, frame.info.cameraState, time_,
                               jumped_,           options_.size,          lights_};
     const Causes events = lastConditions_ ? eventsBetween(*lastConditions_, now, facts_) : Causes::All;

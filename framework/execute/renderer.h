@@ -120,6 +120,9 @@ private:
     double compileMs_ = 0;
 };
 
+// The time of the frame after one at `time`, in a scene of `duration` seconds that starts again at its end.
+double timeAfter(double time, double duration);
+
 // The passes of a graph with its properties: pass objects of `before` of the same name and type are used
 // again, with every property set anew.
 PassSet reusePasses(const Graph& graph, const Registry& registry, const PassSet& before);

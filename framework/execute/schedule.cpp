@@ -10,6 +10,7 @@ Causes eventsBetween(const FrameConditions& last, const FrameConditions& now, co
     if (now.time != last.time) {
         if (facts.geometryMoves) events |= Causes::Transforms;
         if (facts.geometryDeforms) events |= Causes::Geometry;
+        if (facts.cameraMoves) events |= Causes::Cameras;
     }
     if (now.lights != last.lights) events |= Causes::Lights;
     if (now.size != last.size) events |= Causes::Size;
@@ -18,7 +19,8 @@ Causes eventsBetween(const FrameConditions& last, const FrameConditions& now, co
 
 Causes motionOf(Causes events) {
     if (any(events & Causes::Cut)) return Causes::None;
-    return events & (Causes::Camera | Causes::Geometry | Causes::Transforms);
+    return events &
+           (Causes::Camera | Causes::Geometry | Causes::Transforms | Causes::Cameras | Causes::Lights);
 }
 
 void schedule(const Plan& plan, Causes events, Causes lastEvents, std::vector<PassState>& states) {
@@ -32,7 +34,9 @@ void schedule(const Plan& plan, Causes events, Causes lastEvents, std::vector<Pa
             continue;
         }
         state.causes = (pass.depends & events) | state.pending;
-        if (state.readsLastMotion) state.causes |= lasting;
+        // Views of cameras and lights move too, but only of those passes that have one.
+        if (state.readsLastMotion)
+            state.causes |= lasting & (pass.depends | ~(Causes::Cameras | Causes::Lights));
         for (const int input : pass.inputs) state.causes |= states.at(static_cast<size_t>(input)).changed;
         state.runs = pass.always || any(state.causes);
         // What always runs may hold something new each frame, even where no cause came up.

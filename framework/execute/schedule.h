@@ -22,7 +22,8 @@ struct FrameConditions {
 // changes triangles too.
 Causes eventsBetween(const FrameConditions& last, const FrameConditions& now, const SceneFacts& facts);
 
-// The camera moved, or things did: what motion vectors tell. None after a cut, where there is no last frame.
+// A camera moved, or things or lights did: what motion vectors tell. None after a cut, where there is no last
+// frame.
 Causes motionOf(Causes events);
 
 // What the executor remembers of a pass from frame to frame.

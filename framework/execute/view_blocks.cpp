@@ -1,5 +1,4 @@
 #include "execute/view_blocks.h"
-#include "draw/view_data.h"
 #include <cstring>
 
 namespace kestrel {
@@ -17,25 +16,40 @@ void ViewBlocks::adopt(const Plan& plan) {
     blocks_.clear();
 }
 
-void ViewBlocks::produced(int resource, const FrameInfo& frame) {
-    Made& made = *resources_.at(static_cast<size_t>(resource));
-    // A frame that is begun again makes the same content once more.
-    if (made.now && made.now->index != frame.index) made.before = made.now;
-    made.now = frame;
+namespace {
+
+ViewFrame viewFrame(const View& view, const FrameViews& frame) {
+    return {frame.frame.size, frame.frame.index, cameraOf(view, frame.now), cameraOf(view, frame.before)};
 }
 
-gl::Name ViewBlocks::block(const StepBindings::ViewSlot& view, const FrameInfo& frame) {
-    FrameInfo madeIn = frame;
+} // namespace
+
+void ViewBlocks::produced(int resource, const View& view, const FrameViews& frame) {
+    Made& made = *resources_.at(static_cast<size_t>(resource));
+    // A frame that is begun again makes the same content once more.
+    if (made.now && made.now->index != frame.frame.index) made.before = made.now;
+    made.now = viewFrame(view, frame);
+}
+
+ViewBlocks::Block& ViewBlocks::blockOf(const Key& key) {
+    for (Block& block : blocks_)
+        if (block.key == key) return block;
+    return blocks_.emplace_back(Block{key, {}, {}});
+}
+
+gl::Name ViewBlocks::block(const StepBindings::ViewSlot& view, const FrameViews& frame) {
+    ViewFrame madeIn = viewFrame(view.view, frame);
     if (view.resource >= 0) {
         const Made& made = *resources_.at(static_cast<size_t>(view.resource));
-        if (const std::optional<FrameInfo>& known = view.previous ? made.before : made.now; known)
+        if (const std::optional<ViewFrame>& known = view.previous ? made.before : made.now; known) {
+            const CameraState before = madeIn.previousCamera;
             madeIn = *known;
+            madeIn.previousCamera = before;
+        }
     }
-    madeIn.previousCameraState = frame.previousCameraState;
     const shared::ViewData data = viewData(view.view, view.extent, madeIn);
 
-    Block& block = blocks_[{view.resource, view.previous, view.view.camera, view.view.divisor,
-                            view.view.guard, view.view.jitter}];
+    Block& block = blockOf({view.resource, view.previous, view.view});
     if (!block.buffer || std::memcmp(&block.data, &data, sizeof(data)) != 0) {
         if (!block.buffer) block.buffer = gl::Buffer(sizeof(shared::ViewData), "View");
         block.data = data;

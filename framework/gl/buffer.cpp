@@ -1,5 +1,6 @@
 #include "core/check.h"
 #include "core/error.h"
+#include "gl/debug_output.h"
 #include "gl/loader.h"
 #include "gl/objects.h"
 #include <fmt/format.h>
@@ -7,14 +8,6 @@
 namespace kestrel::gl {
 
 void deleteBuffer(Name name) { glDeleteBuffers(1, &name); }
-
-namespace {
-
-void label(GLenum kind, Name name, const std::string& text) {
-    glObjectLabel(kind, name, static_cast<GLsizei>(text.size()), text.c_str());
-}
-
-} // namespace
 
 Buffer::Buffer(std::uint64_t bytes, const std::string& text)
     : bytes_(bytes) {
@@ -34,7 +27,7 @@ Buffer::Buffer(std::uint64_t bytes, const std::string& text)
     if (error != GL_NO_ERROR)
         throw MachineError(
             fmt::format("no memory for buffer '{}' of {} bytes (GL error 0x{:x})", text, bytes, error));
-    label(GL_BUFFER, name, text);
+    setLabel(GL_BUFFER, name, text);
     clear();
 }
 
@@ -105,7 +98,7 @@ Name Buffer::texelView(Format format) const {
     else
         glTextureBufferRange(view, glFormat(format).internal, name(), static_cast<GLintptr>(offset_),
                              static_cast<GLsizeiptr>(bytes_));
-    label(GL_TEXTURE, view, fmt::format("{} texels of buffer {}", info.name, name()));
+    setLabel(GL_TEXTURE, view, fmt::format("{} texels of buffer {}", info.name, name()));
     return view;
 }
 

@@ -2,6 +2,7 @@
 #include "core/log.h"
 #include "gl/loader.h"
 #include <atomic>
+#include <string>
 
 namespace kestrel::gl {
 namespace {
@@ -27,6 +28,13 @@ void GLAPIENTRY onMessage(GLenum source, GLenum type, GLuint, GLenum severity, G
     logMessage(levelOf(type, severity), "OpenGL: " + text);
 }
 
+// A limit counts the final zero, whether one is passed or not.
+std::string_view cutTo(GLenum limit, std::string_view text) {
+    GLint most = 0;
+    glGetIntegerv(limit, &most);
+    return cutText(text, most > 0 ? static_cast<std::size_t>(most) - 1 : 0);
+}
+
 } // namespace
 
 ExpectErrors::ExpectErrors() {
@@ -50,5 +58,24 @@ void enableDebugOutput() {
 }
 
 std::uint64_t severeErrorCount() { return severe; }
+
+void setLabel(unsigned int kind, unsigned int name, std::string_view text) {
+    const std::string_view cut = cutTo(GL_MAX_LABEL_LENGTH, text);
+    glObjectLabel(kind, name, static_cast<GLsizei>(cut.size()), cut.data());
+}
+
+void pushDebugGroup(unsigned int id, std::string_view text) {
+    const std::string_view cut = cutTo(GL_MAX_DEBUG_MESSAGE_LENGTH, text);
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, id, static_cast<GLsizei>(cut.size()), cut.data());
+}
+
+std::string_view cutText(std::string_view text, std::size_t most) {
+    if (text.size() <= most) return text;
+    const auto continues = [&](std::size_t at) {
+        return (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80;
+    };
+    while (most > 0 && continues(most)) --most;
+    return text.substr(0, most);
+}
 
 } // namespace kestrel::gl

@@ -31,6 +31,22 @@ void requireComplete(Name framebuffer, const std::vector<Attachment>& colours, c
 
 } // namespace
 
+std::vector<Attachment*> Target::attachments() {
+    std::vector<Attachment*> result;
+    for (Attachment& colour : colours)
+        if (colour.texture != nullptr) result.push_back(&colour);
+    if (depth.texture != nullptr) result.push_back(&depth);
+    return result;
+}
+
+std::vector<const Attachment*> Target::attachments() const {
+    std::vector<const Attachment*> result;
+    for (const Attachment& colour : colours)
+        if (colour.texture != nullptr) result.push_back(&colour);
+    if (depth.texture != nullptr) result.push_back(&depth);
+    return result;
+}
+
 Name FramebufferCache::get(const std::vector<Attachment>& colours, const Attachment& depth,
                            const Extent& extent) {
     // Serials, not names: GL gives a deleted texture's name to the next one.
@@ -45,8 +61,7 @@ Name FramebufferCache::get(const std::vector<Attachment>& colours, const Attachm
     addKey(depth);
     for (const Attachment& colour : colours) addKey(colour);
     if (!attached) key.insert(key.end(), {extent.width, extent.height, extent.depth});
-    for (const auto& [made, framebuffer] : framebuffers_)
-        if (made == key) return framebuffer.get();
+    if (const auto made = framebuffers_.find(key); made != framebuffers_.end()) return made->second.get();
 
     Name name = 0;
     glCreateFramebuffers(1, &name);
@@ -69,7 +84,7 @@ Name FramebufferCache::get(const std::vector<Attachment>& colours, const Attachm
                                          static_cast<GLint>(extent.depth));
     }
     requireComplete(name, colours, depth);
-    framebuffers_.emplace_back(std::move(key), std::move(handle));
+    framebuffers_.emplace(std::move(key), std::move(handle));
     return name;
 }
 

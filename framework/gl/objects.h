@@ -3,6 +3,7 @@
 #include "graph/types.h"
 #include "image/image.h"
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -153,6 +154,16 @@ struct Attachment {
     int layer = -1;
 };
 
+// What a step draws into.
+struct Target {
+    std::vector<Attachment> colours; // out locations 0, 1, …; a null texture leaves its location empty
+    Attachment depth;
+    [[nodiscard]] bool empty() const { return attachments().empty(); }
+    // Those with a texture.
+    [[nodiscard]] std::vector<Attachment*> attachments();
+    [[nodiscard]] std::vector<const Attachment*> attachments() const;
+};
+
 // Framebuffers by their attachments, made once. They keep their textures' memory, so clear() must be called
 // when textures are given back.
 class FramebufferCache {
@@ -166,7 +177,7 @@ public:
 
 private:
     using Key = std::vector<std::uint64_t>;
-    std::vector<std::pair<Key, Handle<deleteFramebuffer>>> framebuffers_;
+    std::map<Key, Handle<deleteFramebuffer>> framebuffers_;
 };
 
 // GL enums of a format: internal format, pixel format, component type.

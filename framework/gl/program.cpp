@@ -1,5 +1,6 @@
 #include "gl/program.h"
 #include "core/error.h"
+#include "gl/debug_output.h"
 #include "gl/loader.h"
 #include "gl/program_cache.h"
 #include "gl/program_link.h"
@@ -145,7 +146,7 @@ std::string withoutBrackets(const std::string& name) {
 Program::Program(const ComposedProgram& composed, const std::vector<std::string>& attachments,
                  const Capabilities& capabilities) {
     handle_ = Handle<deleteProgram>(glCreateProgram());
-    glObjectLabel(GL_PROGRAM, name(), static_cast<GLsizei>(composed.name.size()), composed.name.c_str());
+    setLabel(GL_PROGRAM, name(), composed.name);
     const ProgramCache cache(composed, attachments);
     fromCache_ = cache.load(name());
     if (!fromCache_) {

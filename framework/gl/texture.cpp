@@ -1,5 +1,6 @@
 #include "core/check.h"
 #include "core/error.h"
+#include "gl/debug_output.h"
 #include "gl/loader.h"
 #include "gl/objects.h"
 #include <algorithm>
@@ -162,7 +163,7 @@ Texture::Texture(const Desc& desc, const std::string& label)
     if (error != GL_NO_ERROR)
         throw MachineError(fmt::format("no memory for texture '{}', {}, {} bytes (GL error 0x{:x})", label,
                                        describe(desc), desc.totalBytes(), error));
-    glObjectLabel(GL_TEXTURE, texture, static_cast<GLsizei>(label.size()), label.c_str());
+    setLabel(GL_TEXTURE, texture, label);
     // Without a sampler a texture is read as it is: no filter between texels, no level but those it has.
     glTextureParameteri(texture, GL_TEXTURE_MIN_FILTER,
                         desc.mips > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);

@@ -1,3 +1,4 @@
+#include "gl/debug_output.h"
 #include "gl/loader.h"
 #include "gl/objects.h"
 
@@ -10,7 +11,7 @@ VertexArray::VertexArray(const std::string& label) {
     Name name = 0;
     glCreateVertexArrays(1, &name);
     handle_ = Handle<deleteVertexArray>(name);
-    glObjectLabel(GL_VERTEX_ARRAY, name, static_cast<GLsizei>(label.size()), label.c_str());
+    setLabel(GL_VERTEX_ARRAY, name, label);
 }
 
 void VertexArray::setIndices(const Buffer& buffer) { glVertexArrayElementBuffer(name(), buffer.name()); }

@@ -86,6 +86,7 @@ private:
             note(output.port, "no module file is declared for it");
         if (!isModule(info->kind)) checkSize(output);
         if (!output.counter.empty()) checkCounter(output);
+        if (output.same.empty() && output.updates.empty()) checkView(output);
     }
 
     void checkCounter(const Output& output) {
@@ -97,6 +98,36 @@ private:
             note(output.port,
                  fmt::format("its counter '{}' has no clear value to count from", output.counter));
         if (output.capacity == 0) note(output.port, "has a counter, but no capacity");
+    }
+
+    // Whether the scene has what the view looks from.
+    void checkView(const Output& output) {
+        const View& view = output.desc.view;
+        const SceneFacts& facts = network_.world.facts;
+        if (const auto* of = std::get_if<CameraView>(&view.source)) {
+            const auto& names = facts.cameras;
+            if (!of->name.empty() && std::find(names.begin(), names.end(), of->name) == names.end())
+                note(output.port, fmt::format("is seen by camera '{}', which the scene has not{}", of->name,
+                                              didYouMean(of->name, names)));
+            if (of->name.empty() && (of->camera < 0 || static_cast<size_t>(of->camera) >= names.size()))
+                note(output.port,
+                     fmt::format("is seen by camera {}; the scene has {}", of->camera, names.size()));
+        }
+        if (const auto* of = std::get_if<CubeView>(&view.source)) {
+            if (of->face < 0 || of->face > 5)
+                note(output.port, fmt::format("is seen by face {} of a cube, which has 0 to 5", of->face));
+            if (!(of->nearPlane > 0) || (of->farPlane > 0 && !(of->farPlane > of->nearPlane)))
+                note(output.port, fmt::format("is seen from {} to {}, which is no range of distances",
+                                              of->nearPlane, of->farPlane));
+        }
+        if (const auto* of = std::get_if<LightView>(&view.source)) {
+            if (of->light < 0 || static_cast<std::uint32_t>(of->light) >= facts.lights())
+                note(output.port,
+                     fmt::format("is seen by light {}; the scene has {}", of->light, facts.lights()));
+            if (of->face < 0 || of->face > 5)
+                note(output.port,
+                     fmt::format("is seen by face {} of a light, which has at most 0 to 5", of->face));
+        }
     }
 
     void checkLikeness(const Output& output, const PortInfo& info, const std::string& input) {
@@ -190,6 +221,11 @@ private:
             note(use.port, fmt::format("{} reads texels of a buffer that has no texel format", what));
         if (use.mip >= desc.mips)
             note(use.port, fmt::format("{} uses mip {} of {}", what, use.mip, desc.mips));
+        if (use.layer >= 0 && (buffer || (use.access != Access::Attachment && use.access != Access::Image)))
+            note(use.port, fmt::format("{} uses layer {} {} by {}, which has no layers", what, use.layer,
+                                       buffer ? "of a buffer" : "of a texture", accessName(use.access)));
+        else if (use.layer >= desc.layers(use.mip))
+            note(use.port, fmt::format("{} uses layer {} of {}", what, use.layer, desc.layers(use.mip)));
         if (use.write && (use.access == Access::Fetch || use.access == Access::Uniform ||
                           use.access == Access::Vertex || use.access == Access::Indirect))
             note(use.port, fmt::format("{} writes by {}", what, accessName(use.access)));

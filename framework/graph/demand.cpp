@@ -40,6 +40,10 @@ Declaration declare(const Network& network, const Node& node, Demand demand) {
         const std::string& like = output.same.empty() ? output.updates : output.same;
         if (!like.empty() && node.inputs.connected(like)) output.desc = node.inputs[like].desc;
     }
+    // What is seen from elsewhere than the frame's camera changes as that does.
+    for (const Output& output : declaration.outputs)
+        if (output.same.empty() && output.updates.empty() && !output.constant)
+            declaration.depends |= causesOf(output.desc.view);
     for (const Module& module : declaration.modules)
         if (findOutput(declaration, module.port) == nullptr) {
             Output output;
@@ -54,7 +58,7 @@ Declaration declare(const Network& network, const Node& node, Demand demand) {
 Causes withinFacts(Causes causes, const SceneFacts& facts) {
     if (!facts.geometryMoves && !facts.geometryDeforms)
         causes = causes & ~(Causes::Geometry | Causes::Transforms);
-    if (!facts.cameraMoves) causes = causes & ~Causes::Camera;
+    if (!facts.cameraMoves) causes = causes & ~(Causes::Camera | Causes::Cameras);
     if (!facts.lightsMove) causes = causes & ~Causes::Lights;
     return causes;
 }

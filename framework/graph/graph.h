@@ -42,7 +42,8 @@ struct GraphOutput {
 
 struct Graph {
     std::string name, comment;
-    std::string sceneSource, sceneCamera; // empty: the file names none
+    // "builtin:NAME" or a file, relative to the folder of `file`; empty: the file names none.
+    std::string sceneSource, sceneCamera;
     std::vector<GraphPass> passes;
     std::vector<GraphEdge> edges;
     std::vector<GraphOutput> outputs;
@@ -60,10 +61,6 @@ inline constexpr size_t maxGraphPasses = 10'000, maxGraphEdges = 100'000, maxGra
 // missing key), each with file:line:column. Names are not resolved here (see validate).
 Graph loadGraph(const std::filesystem::path& file);
 Graph parseGraph(std::string_view text, const std::string& file);
-
-// The scene that the file names: "builtin:NAME", or the path of a file in the graph's folder; empty if it
-// names none. Throws InputError if the path is absolute or leaves the folder, also through a symbolic link.
-std::string sceneOf(const Graph& graph);
 
 // The canonical text: keys in fixed order, one line a pass and an edge. parse and save again give the same
 // bytes.

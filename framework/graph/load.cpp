@@ -58,16 +58,9 @@ private:
     void readScene(const Json& scene, Graph& graph) {
         JsonFields fields(scene, "the scene", problems_);
         if (scene.kind != Kind::Object) return;
-        const Json* source = fields.optional("source", Kind::String);
-        graph.sceneSource = text(source);
+        graph.sceneSource = text(fields.optional("source", Kind::String));
         graph.sceneCamera = text(fields.optional("camera", Kind::String));
         fields.refuseOthers();
-        if (graph.sceneSource.starts_with("builtin:") || graph.sceneSource.empty()) return;
-        const auto path = std::filesystem::path(graph.sceneSource).lexically_normal();
-        if (path.is_absolute() || path.begin()->string() == "..")
-            note(source->where, fmt::format("the scene '{}' leaves the folder of the graph; it must be "
-                                            "'builtin:NAME' or a path inside that folder",
-                                            graph.sceneSource));
     }
 
     void readPasses(const Json& passes, Graph& graph) {
@@ -181,11 +174,6 @@ const GraphPass* Graph::find(std::string_view pass) const {
 
 GraphPass* Graph::find(std::string_view pass) {
     return const_cast<GraphPass*>(std::as_const(*this).find(pass));
-}
-
-std::string sceneOf(const Graph& graph) {
-    if (graph.sceneSource.empty() || graph.sceneSource.starts_with("builtin:")) return graph.sceneSource;
-    return pathInside(graph.file.parent_path(), graph.sceneSource).string();
 }
 
 } // namespace kestrel

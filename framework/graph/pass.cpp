@@ -9,7 +9,8 @@ Extent World::extentOf(const View& view) const {
         return (frame + 2 * static_cast<std::uint32_t>(view.guard) + divisor - 1) / divisor;
     };
     KESTREL_CHECK(view.divisor > 0 && view.guard >= 0);
-    return {along(size.width), along(size.height), 1};
+    const Extent whole = sizeOf(view);
+    return {along(whole.width), along(whole.height), 1};
 }
 
 const Inputs::Input& Inputs::operator[](std::string_view port) const {

@@ -22,8 +22,11 @@ struct World {
     SceneFacts facts;
     Capabilities capabilities;
     Extent size{640, 360, 1}; // of the frame, in pixels
-    // Extent of an image with this view: (size + 2 guard) / divisor, rounded up.
+    // Extent of an image with this view: (size + 2 guard) / divisor, rounded up; `size` is the frame's, or
+    // what sizeOf() says.
     [[nodiscard]] Extent extentOf(const View& view) const;
+    // Of the whole image that a view's pixels are counted in: the frame's, or a square.
+    [[nodiscard]] Extent sizeOf(const View& view) const { return kestrel::sizeOf(view, size); }
 };
 
 // What is connected to the input ports. An input that is not connected, or whose producer was left out, is
@@ -95,6 +98,9 @@ struct Use {
     bool previous = false; // last frame's content: keeps a history of the resource
     bool linear = false;   // Fetch: linear filtering (and between mips); otherwise nearest
     int mip = -1; // Image, Attachment: that level only; Fetch: restricts the levels; -1: level 0 / all levels
+    // Image, Attachment: that layer of an array, slice of a volume or face of a cube alone, which is a plain
+    // image then; -1: all of them (a layered attachment)
+    int layer = -1;
 };
 
 // Includes the module connected to input `port` (`#include <port:NAME>`) into the step's program.

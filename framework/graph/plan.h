@@ -50,7 +50,7 @@ struct PlanBinding {
     int resource = -1; // index into Plan::resources
     Access access = Access::Fetch;
     bool write = false, previous = false, linear = false;
-    int mip = -1;
+    int mip = -1, layer = -1;
 };
 
 // A uniform block that receives the ViewData of an image (shared/view.h), if the program declares it.

@@ -64,7 +64,8 @@ Out stepJson(const PlanStep& step) {
                             {"write", binding.write},
                             {"previous", binding.previous},
                             {"linear", binding.linear},
-                            {"mip", binding.mip}});
+                            {"mip", binding.mip},
+                            {"layer", binding.layer}});
     json["bindings"] = std::move(bindings);
     Out copies = Out::array();
     for (const auto& [from, to] : step.copies) copies.push_back({from, to});

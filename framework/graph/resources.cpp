@@ -164,6 +164,7 @@ private:
             binding.previous = use.use.previous;
             binding.linear = use.use.linear;
             binding.mip = use.use.mip;
+            binding.layer = use.use.layer;
             planned.bindings.push_back(std::move(binding));
         }
         if (!step.shaders.empty()) planned.program = programIndex(programOf(network_, node, step));

@@ -84,7 +84,60 @@ std::uint64_t Desc::totalBytes() const {
     return texels * static_cast<std::uint64_t>(formatInfo(format).bytes);
 }
 
+int Desc::layers(int mip) const {
+    if (kind == ResourceKind::TextureCube) return 6;
+    if (kind == ResourceKind::Texture2DArray) return static_cast<int>(extent.depth);
+    if (kind != ResourceKind::Texture3D) return 1;
+    return static_cast<int>(std::max(extent.depth >> std::clamp(mip, 0, 31), 1U));
+}
+
+Causes causesOf(const View& view) {
+    Causes causes = view.jitter ? Causes::Frame : Causes::None;
+    if (std::holds_alternative<FrameView>(view.source)) return Causes::None;
+    if (std::holds_alternative<CameraView>(view.source)) causes |= Causes::Cameras;
+    if (std::holds_alternative<LightView>(view.source)) causes |= Causes::Lights;
+    if (const auto* cube = std::get_if<CubeView>(&view.source); cube != nullptr && !cube->point)
+        causes |= Causes::Camera | Causes::Cut;
+    return causes;
+}
+
+Extent sizeOf(const View& view, const Extent& frame) {
+    int side = -1;
+    if (const auto* of = std::get_if<CubeView>(&view.source)) side = of->side;
+    if (const auto* of = std::get_if<LightView>(&view.source)) side = of->side;
+    if (side < 0) return frame;
+    const std::uint32_t pixels = side > 0 ? static_cast<std::uint32_t>(side) : frame.height;
+    return {pixels, pixels, 1};
+}
+
+namespace {
+
+std::string sideText(int side) { return side > 0 ? fmt::format(", {} pixels a side", side) : ""; }
+
+} // namespace
+
+std::string describe(const View& view) {
+    if (const auto* of = std::get_if<CameraView>(&view.source))
+        return of->name.empty() ? fmt::format("camera {}", of->camera) : fmt::format("camera '{}'", of->name);
+    if (const auto* of = std::get_if<CubeView>(&view.source)) {
+        const std::string about = of->point
+                                      ? fmt::format("({}, {}, {})", of->point->x, of->point->y, of->point->z)
+                                      : std::string("the eye");
+        const std::string reach = of->farPlane > 0 ? fmt::format("{}", of->farPlane) : "infinity";
+        return fmt::format("cube face {} about {}, from {} to {}{}", of->face, about, of->nearPlane, reach,
+                           sideText(of->side));
+    }
+    if (const auto* of = std::get_if<LightView>(&view.source))
+        return fmt::format("light {}, face {}{}", of->light, of->face, sideText(of->side));
+    return {};
+}
+
 std::string describe(const Desc& desc) {
+    if (const std::string seen = describe(desc.view); !seen.empty()) {
+        Desc frames = desc;
+        frames.view = {};
+        return fmt::format("{} seen by {}", describe(frames), seen);
+    }
     const std::string_view format = formatInfo(desc.format).name;
     const std::string mips = desc.mips > 1 ? fmt::format(", {} mips", desc.mips) : std::string();
     const Extent& e = desc.extent;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <variant>
@@ -52,7 +53,8 @@ enum class Causes : std::uint32_t {
     Lights = 1 << 6,
     Properties = 1 << 7,
     Size = 1 << 8,
-    All = (1 << 9) - 1
+    Cameras = 1 << 9, // a camera of the scene moved, be it the frame's or not: what a CameraView depends on
+    All = (1 << 10) - 1
 };
 constexpr Causes operator|(Causes a, Causes b) { return Causes(std::uint32_t(a) | std::uint32_t(b)); }
 constexpr Causes operator&(Causes a, Causes b) { return Causes(std::uint32_t(a) & std::uint32_t(b)); }
@@ -60,20 +62,57 @@ constexpr Causes operator~(Causes a) { return Causes(~std::uint32_t(a) & std::ui
 constexpr Causes& operator|=(Causes& a, Causes b) { return a = a | b; }
 constexpr bool any(Causes a) { return a != Causes::None; }
 
-// The view that an image was made with. Whoever reads a depth reads it with this view.
+// ---- where a view looks from
+
+struct FrameView { // the frame's camera
+    friend bool operator==(const FrameView&, const FrameView&) = default;
+};
+struct CameraView { // a camera of the scene, whichever the frame has chosen
+    int camera = 0;
+    std::string name = {}; // counts in place of the number where it is not empty
+    friend bool operator==(const CameraView&, const CameraView&) = default;
+};
+// One face of a cube whose axes are those of render space: square, 90 degrees. Faces 0 to 5 look along +x,
+// -x, +y, -y, +z, -z; up is +y, for face 2 -z and for face 3 +z.
+struct CubeView {
+    int face = 0;
+    std::optional<glm::vec3> point = {};     // where the rays meet, render space; absent: the frame's eye
+    float nearPlane = 0.01f, farPlane = 100; // in scene units; far <= 0: infinite
+    int side = 0;                            // of the whole image, pixels; 0: as high as the frame
+    friend bool operator==(const CubeView&, const CubeView&) = default;
+};
+// What a light sees: a face of its shadow map (draw/light_faces.h). Square.
+struct LightView {
+    int light = 0; // index into the frame's lights
+    int face = 0;
+    int side = 0; // as CubeView::side
+    friend bool operator==(const LightView&, const LightView&) = default;
+};
+using ViewSource = std::variant<FrameView, CameraView, CubeView, LightView>;
+
+// The view that an image was made with. Whoever reads a depth reads it with this view. Pixels of square views
+// are counted as if the frame had their side.
 struct View {
-    int camera = 0;      // 0: the frame's camera
+    ViewSource source = {};
     int divisor = 1;     // the image has 1/divisor of the frame's resolution per axis
     int guard = 0;       // extra pixels on each side, in pixels of the frame
     bool jitter = false; // sub-pixel offset that changes with the frame
     friend bool operator==(const View&, const View&) = default;
 };
+// The causes for which what a view sees from changes. None for the frame's camera: its passes name theirs.
+[[nodiscard]] Causes causesOf(const View& view);
+// "camera 1", "camera 'top'", "cube face 2 about the eye"…, with all that tells two apart; empty for the
+// frame's.
+[[nodiscard]] std::string describe(const View& view);
 
 struct Extent {
     std::uint32_t width = 1, height = 1;
     std::uint32_t depth = 1; // of a 3D texture; layers of an array
     friend bool operator==(const Extent&, const Extent&) = default;
 };
+
+// Of the whole image that a view's pixels are counted in: the frame's, or a square.
+[[nodiscard]] Extent sizeOf(const View& view, const Extent& frame);
 
 enum class ResourceKind : std::uint8_t { Texture2D, Texture2DArray, TextureCube, Texture3D, Buffer, Module };
 
@@ -120,12 +159,14 @@ struct Desc {
     static Desc module(Bits provides, Bits required = 0);
     // Bytes of all mips and layers.
     [[nodiscard]] std::uint64_t totalBytes() const;
+    // Layers of level `mip`: of an array, slices of a volume, 6 of a cube, else 1.
+    [[nodiscard]] int layers(int mip = 0) const;
 };
 
 // "4 MiB", "1.5 KiB", "12 bytes": exact where the number is a whole multiple.
 std::string bytesText(std::uint64_t bytes);
 
-// "rgba16f 640x360", "buffer 4 MiB"…: for messages and reports.
+// "rgba16f 640x360", "buffer 4 MiB", "r32f 256x256 seen by camera 1"…: for messages and reports.
 std::string describe(const Desc& desc);
 
 // What the context can do, as plain data: from the context, or the minimum of OpenGL 4.6.

@@ -32,6 +32,8 @@ std::vector<ExrPart> partsOf(const std::vector<Imf::Header>& headers) {
     std::vector<ExrPart> parts;
     for (const Imf::Header& header : headers) {
         ExrPart part{header.hasName() ? header.name() : "", {}, isDeep(header)};
+        if (Imf::hasMultiView(header) && !Imf::multiView(header).empty())
+            part.view = Imf::multiView(header).front();
         for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
             part.channels.emplace_back(channel.name());
         parts.push_back(std::move(part));

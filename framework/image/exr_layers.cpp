@@ -120,7 +120,7 @@ private:
 
     // A layer's name where several parts may have one of the same name.
     [[nodiscard]] std::string fullName(const Group& group) const {
-        if (parts_.size() == 1) return group.prefix;
+        if (parts_.size() == 1) return group.prefix.empty() ? parts_[0].view : group.prefix;
         const std::string& part = parts_[group.part].name;
         if (group.prefix.empty() || group.prefix == part) return part;
         return part + "." + group.prefix;

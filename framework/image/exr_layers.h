@@ -11,6 +11,7 @@ struct ExrPart {
     std::string name;
     std::vector<std::string> channels;
     bool deep = false;
+    std::string view = {}; // the eye, say, that channels without a layer's name are seen with
 };
 
 // Channels of one part that make a picture together.

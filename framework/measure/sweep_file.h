@@ -26,10 +26,10 @@ struct SweepSetting {
 };
 
 struct SweepScene {
-    std::string name; // of plots and file names: the file's, else the source's without "builtin:"
-    std::string source,
-        camera;       // "builtin:NAME", or a file in the folder of the sweep file; camera may be empty
-    std::string slug; // unique, for file names
+    std::string name;   // of plots and file names: the file's, else the source's without "builtin:"
+    std::string source; // "builtin:NAME", or a file: absolute, or relative to the folder of the sweep file
+    std::string camera; // may be empty
+    std::string slug;   // unique, for file names
     Location where;
 };
 
@@ -89,7 +89,8 @@ struct SweepTime {
 struct Sweep {
     std::string name, title, comment; // name: the file's without its ending
     std::filesystem::path file;
-    std::string text; // of the file, for the hash
+    bool sizeGiven = false, framesGiven = false; // on the command line, instead of the file's
+    bool allowOutside = false; // SceneOptions::allowOutside, for all scenes; the command line's
     Extent size{640, 360, 1};
     int frames = 16;     // after which the picture is taken
     int warmUp = 1;      // frames that are not timed, each time a variant is timed
@@ -99,7 +100,7 @@ struct Sweep {
     bool moving = false;  // scenes move on from frame to frame; else their time stands still at 0
     bool rebuild = false; // everything is made anew in each timed frame, as in a scene that moves
     bool hdr = false;     // pictures hold linear light without upper limit: HDR-FLIP
-    std::string plotTime = "total", plotError; // the axes that the page shows first
+    std::string plotTime = "total", plotError = "flip"; // the axes that the page shows first
     std::vector<SweepTime> times;
     std::vector<SweepScene> scenes;
     std::optional<SweepReference> reference;
@@ -157,8 +158,8 @@ Shard parseShard(const std::string& text);
 // name if there is none.
 std::vector<bool> choosePoints(const std::vector<SweepPoint>& points, const std::string& only);
 
-// The graph file that a sweep names: in the folder of the sweep file, else among the shipped graphs
-// (shareFolder()/graphs). Throws InputError if it is in neither, or leaves them.
+// The graph file that a sweep names: absolute, or relative to the folder of the sweep file, else among the
+// shipped graphs (shareFolder()/graphs). Throws InputError with the near name if there is none.
 std::filesystem::path sweepGraphFile(const Sweep& sweep, const std::string& graph);
 
 // The graph with the settings, with `outputs` as its only outputs. Throws InputError with everything that is
@@ -166,12 +167,13 @@ std::filesystem::path sweepGraphFile(const Sweep& sweep, const std::string& grap
 Graph sweepGraph(const Sweep& sweep, const std::string& graph, const std::vector<SweepSetting>& settings,
                  const std::vector<PortRef>& outputs, const Registry& registry, const Location& where);
 
+// The file of a scene that is not built in, as it is named from where the program runs.
+std::filesystem::path sweepSceneFile(const Sweep& sweep, const SweepScene& scene);
+
 // Everything that is wrong with the graphs, settings and outputs of a sweep, before anything is measured.
 // Throws InputError.
 void checkSweep(const Sweep& sweep, const std::vector<SweepPoint>& points, const Registry& registry);
-
-// Of the text of the file, of the graphs that it names, of size, frames and repeats: 16 hexadecimal digits.
-// Results of another hash are of another sweep.
-std::string sweepHash(const Sweep& sweep);
+// The same of its scenes: files that are not there.
+void checkSweepScenes(const Sweep& sweep);
 
 } // namespace kestrel

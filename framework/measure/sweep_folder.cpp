@@ -1,25 +1,15 @@
 // The folder that a sweep's results live in.
 #include "core/files.h"
+#include "measure/sweep_manifest.h"
 #include "measure/sweep_results.h"
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
 #include <set>
 
 namespace kestrel {
 namespace {
 
 namespace fs = std::filesystem;
-
-// First line: the hash of the sweep. Second: the machine, or "several".
-constexpr const char* manifestName = "sweep.manifest";
-
-std::vector<std::string> manifestLines(const fs::path& folder) {
-    std::ifstream stream(folder / manifestName);
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(stream, line);) lines.push_back(line);
-    return lines;
-}
 
 bool isThere(const fs::path& file) {
     std::error_code ignored;
@@ -43,36 +33,41 @@ SweepFolder::SweepFolder(fs::path folder, const Sweep& sweep)
     : folder_(std::move(folder))
     , sweep_(sweep) {}
 
-std::string SweepFolder::heldHash() const {
-    const std::vector<std::string> lines = manifestLines(folder_);
-    return lines.empty() ? std::string() : lines.front();
-}
-
 void SweepFolder::begin(bool resume, const SweepMachine* machine) const {
     const Location where{folder_.string()};
-    const std::string hash = sweepHash(sweep_);
-    const std::vector<std::string> held = manifestLines(folder_);
-    if (!held.empty()) {
-        if (!resume)
-            throw InputError(where,
-                             "holds results already: --resume goes on with them; else name another folder");
-        if (held.front() != hash)
-            throw InputError(where,
-                             fmt::format("holds results of another form of {} (the file, a graph that it "
-                                         "names, size, frames or repeats have changed since): measure into "
-                                         "another folder, or remove this one",
-                                         sweep_.file.filename().string()));
-        if (machine != nullptr && held.size() > 1 && held[1] != machine->id)
-            throw InputError(where,
-                             fmt::format("holds times of {}, and this is machine {}: times compare within "
-                                         "one machine only; measure into another folder and join both with "
-                                         "--merge",
-                                         held[1] == "several" ? "several machines" : "machine " + held[1],
-                                         machine->id));
+    const SweepManifest now(sweep_, machine != nullptr ? machine->id : "several");
+    std::optional<SweepManifest> held = SweepManifest::read(folder_);
+    if (!held) {
+        if (isThere(folder_) && !fs::is_directory(folder_)) throw InputError(where, "is not a folder");
+        now.write(folder_);
         return;
     }
-    if (isThere(folder_) && !fs::is_directory(folder_)) throw InputError(where, "is not a folder");
-    writeFile(folder_ / manifestName, hash + "\n" + (machine != nullptr ? machine->id : "several") + "\n");
+    if (!resume)
+        throw InputError(where,
+                         "holds results already: --resume goes on with them; else name another folder");
+    refuseChanges(*held, now);
+    if (machine != nullptr && held->machine() != machine->id)
+        throw InputError(
+            where,
+            fmt::format("holds times of {}, and this is machine {}: times compare within "
+                        "one machine only; measure into another folder and join both with "
+                        "--merge",
+                        held->machine() == "several" ? "several machines" : "machine " + held->machine(),
+                        machine->id));
+    held->add(now);
+    held->write(folder_);
+}
+
+void SweepFolder::refuseChanges(const SweepManifest& held, const SweepManifest& now) const {
+    std::vector<Problem> problems;
+    for (const std::string& cause : held.changes(now))
+        problems.push_back({Location{folder_.string()}, fmt::format("was measured otherwise: {}", cause)});
+    if (problems.empty()) return;
+    problems.push_back({Location{folder_.string()},
+                        fmt::format("its results cannot be kept for {}: measure into another folder, or "
+                                    "remove this one",
+                                    sweep_.file.filename().string())});
+    throw InputError(std::move(problems));
 }
 
 fs::path SweepFolder::pointFolder(const SweepUnit& unit, const SweepPoint& point) const {
@@ -137,12 +132,12 @@ void SweepFolder::write(const SweepMachine& machine) const {
 
 void SweepFolder::merge(const SweepFolder& other) const {
     const Location where{other.folder_.string()};
-    const std::string hash = other.heldHash();
-    if (hash.empty()) throw InputError(where, "holds no results of a sweep");
-    if (hash != heldHash())
-        throw InputError(where,
-                         fmt::format("holds results of another form of {}; only shards of one sweep join",
-                                     sweep_.file.filename().string()));
+    const std::optional<SweepManifest> theirs = SweepManifest::read(other.folder_);
+    if (!theirs) throw InputError(where, "holds no results of a sweep");
+    SweepManifest mine = SweepManifest::read(folder_).value();
+    other.refuseChanges(*theirs, mine);
+    mine.add(*theirs);
+    mine.write(folder_);
     const auto shared = [](const fs::path& file) { // the same in every shard that needs it
         const std::string text = file.generic_string();
         return text.starts_with("references/") || text.starts_with("machines/");
@@ -163,7 +158,7 @@ void SweepFolder::merge(const SweepFolder& other) const {
 SweepResults SweepFolder::gather(const std::vector<SweepPoint>& points,
                                  const std::vector<SweepUnit>& units) const {
     SweepResults results;
-    results.hash = heldHash();
+    if (const auto manifest = SweepManifest::read(folder_)) results.hash = manifest->hash();
     for (const fs::path& file : filesBelow(folder_ / "parts" / "machines")) {
         const fs::path full = folder_ / "parts" / "machines" / file;
         results.machines.push_back(machineOf(readText(full), full.string()));
@@ -202,9 +197,7 @@ SweepResults SweepFolder::gather(const std::vector<SweepPoint>& points,
                 if (spins.emplace(repetition.spinOne, repetition.spinTwo).second)
                     results.spins[repetition.machine].emplace_back(repetition.spinOne, repetition.spinTwo);
             row.command = renderCommand(sweep_, scene, point);
-            row.timesCommand = fmt::format("kestrel sweep {} --size {}x{} --frames {} --only {} --out again",
-                                           shellWord(sweep_.file.string()), sweep_.size.width,
-                                           sweep_.size.height, sweep_.frames, shellWord(point.name));
+            row.timesCommand = timesCommand(sweep_, point);
             results.rows.push_back(std::move(row));
         }
     }
@@ -213,7 +206,9 @@ SweepResults SweepFolder::gather(const std::vector<SweepPoint>& points,
 }
 
 void SweepFolder::writeResults(const SweepResults& results) const {
-    writeFile(folder_ / "results.json", resultsJson(sweep_, results));
+    const std::string json = resultsJson(sweep_, results);
+    writeFile(folder_ / "results.json", json);
+    writeFile(folder_ / "results.md", resultsMarkdown(json, "results.json"));
     writeFile(folder_ / "results.csv", resultsCsv(sweep_, results));
     writeFile(folder_ / "index.html", resultsPage(sweep_, results));
 }

@@ -1,8 +1,8 @@
 // The parts of a sweep's results as JSON text and back.
 #include "measure/sweep_results.h"
 #include <algorithm>
-#include <cstdio>
-#include <fmt/format.h>
+#include <ctime>
+#include <fmt/chrono.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -68,7 +68,8 @@ SweepMachine thisMachine(const std::string& renderer, const std::string& driver,
                             std::to_string(machine.threads);
     std::uint32_t hash = 0x811c9dc5U; // FNV-1a
     for (const char c : all) hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193U;
-    machine.id = fmt::format("{:06x}", hash & 0xFFFFFFU);
+    machine.id = fmt::format("m{:06x}", hash & 0xFFFFFFU);
+    machine.date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
     return machine;
 }
 
@@ -185,7 +186,8 @@ std::string partText(const SweepMachine& machine) {
                      {"renderer", machine.renderer},
                      {"driver", machine.driver},
                      {"clock", machine.clock},
-                     {"version", machine.version}});
+                     {"version", machine.version},
+                     {"date", machine.date}});
 }
 
 SweepMachine machineOf(const std::string& text, const std::string& file) {
@@ -197,6 +199,7 @@ SweepMachine machineOf(const std::string& text, const std::string& file) {
         machine.driver = json.at("driver").get<std::string>();
         machine.clock = json.at("clock").get<std::string>();
         machine.version = json.at("version").get<std::string>();
+        machine.date = json.at("date").get<std::string>();
     });
 }
 

@@ -1,6 +1,5 @@
 // What a sweep file unfolds to: points, units, shards; and whether the graphs bear it.
 #include "core/files.h"
-#include "core/hash.h"
 #include "measure/sweep_file.h"
 #include <algorithm>
 #include <charconv>
@@ -165,20 +164,36 @@ std::vector<bool> choosePoints(const std::vector<SweepPoint>& points, const std:
 
 std::filesystem::path sweepGraphFile(const Sweep& sweep, const std::string& graph) {
     const std::filesystem::path folder = sweep.file.has_parent_path() ? sweep.file.parent_path() : ".";
-    std::error_code ignored;
-    if (const auto file = pathInside(folder, graph); std::filesystem::is_regular_file(file, ignored))
-        return file;
     const std::filesystem::path shipped = shareFolder() / "graphs";
-    if (const auto file = pathInside(shipped, graph); std::filesystem::is_regular_file(file, ignored))
-        return file;
+    std::error_code ignored;
+    for (const std::filesystem::path& place : {folder, shipped})
+        if (auto file = place / graph; std::filesystem::is_regular_file(file, ignored)) return file;
     std::vector<std::string> names;
     for (const std::filesystem::path& place : {folder, shipped})
         for (const auto& entry : std::filesystem::directory_iterator(place, ignored))
             if (entry.path().extension() == ".json") names.push_back(entry.path().filename().string());
     throw InputError(
-        fmt::format("there is no graph '{}' in the folder of the sweep file, nor among those that "
-                    "come with Kestrel{}",
-                    graph, didYouMean(graph, names)));
+        std::filesystem::path(graph).is_absolute()
+            ? fmt::format("there is no graph '{}'", graph)
+            : fmt::format(
+                  "there is no graph '{}' seen from the folder of the sweep file, nor among those that "
+                  "come with Kestrel{}",
+                  graph, didYouMean(graph, names)));
+}
+
+std::filesystem::path sweepSceneFile(const Sweep& sweep, const SweepScene& scene) {
+    return sweep.file.parent_path() / scene.source;
+}
+
+void checkSweepScenes(const Sweep& sweep) {
+    std::vector<Problem> problems;
+    std::error_code ignored;
+    for (const SweepScene& scene : sweep.scenes)
+        if (!scene.source.starts_with("builtin:") &&
+            !std::filesystem::exists(sweepSceneFile(sweep, scene), ignored))
+            problems.push_back({scene.where, fmt::format("there is no scene file '{}'",
+                                                         sweepSceneFile(sweep, scene).string())});
+    if (!problems.empty()) throw InputError(std::move(problems));
 }
 
 Graph sweepGraph(const Sweep& sweep, const std::string& graph, const std::vector<SweepSetting>& settings,
@@ -240,22 +255,6 @@ void checkSweep(const Sweep& sweep, const std::vector<SweepPoint>& points, const
         check(point.graph, point.settings, outputs, point.where);
     }
     if (!problems.empty()) throw InputError(std::move(problems));
-}
-
-std::string sweepHash(const Sweep& sweep) {
-    Fnv1a hash;
-    const auto add = [&](const std::string& text) { hash.add(text + '\0'); };
-    add(sweep.text);
-    add(fmt::format("{}x{} {} {}", sweep.size.width, sweep.size.height, sweep.frames, sweep.repeats));
-    std::set<std::string> graphs;
-    if (sweep.reference) graphs.insert(sweep.reference->graph);
-    if (sweep.rays) graphs.insert(sweep.rays->graph);
-    for (const SweepVariant& variant : sweep.variants) graphs.insert(variant.graph);
-    for (const std::string& graph : graphs) {
-        add(graph);
-        add(readText(sweepGraphFile(sweep, graph)));
-    }
-    return fmt::format("{:016x}", hash.value());
 }
 
 } // namespace kestrel

@@ -1,5 +1,5 @@
 // What a sweep has measured: as parts (one file a measurement, so that a stopped sweep goes on), as rows, and
-// as results.json and results.csv.
+// as results.json, results.csv, results.md and a page.
 #pragma once
 #include "measure/sweep_file.h"
 #include <map>
@@ -19,9 +19,12 @@ Quartiles quartilesOf(std::vector<double> series);
 
 // Which machine measured: times compare within one only.
 struct SweepMachine {
-    std::string id; // of this host, renderer and driver: 6 hexadecimal digits
+    // Of this host, renderer and driver: "m" and 6 hexadecimal digits. It begins with a letter, so that
+    // nothing that reads a table takes "012345" or "925e13" for a number.
+    std::string id;
     std::string cpu, renderer, driver, clock, version;
     int threads = 0;
+    std::string date; // of its last run: "2026-01-31", UTC
     friend bool operator==(const SweepMachine&, const SweepMachine&) = default;
 };
 SweepMachine thisMachine(const std::string& renderer, const std::string& driver, const std::string& clock);
@@ -127,7 +130,7 @@ std::optional<double> errorOf(const SweepRow& row, const std::string& error);
 void markPareto(std::vector<SweepRow>& rows, const Sweep& sweep);
 
 struct SweepResults {
-    std::string hash;
+    std::string hash; // of all that the measurements rest on
     std::vector<SweepMachine> machines;
     std::map<std::string, std::vector<std::pair<double, double>>>
         spins;                                              // machine -> spin tests (1, 2 threads)
@@ -145,23 +148,34 @@ std::string resultsCsv(const Sweep& sweep, const SweepResults& results);
 // The page: everything in one file but the pictures, which it names relative to itself.
 std::string resultsPage(const Sweep& sweep, const SweepResults& results);
 
-// The command that makes a point's picture again.
+// Titles and tables of a results.json as Markdown: the command, date, machines and spin tests, and for each
+// scene and plot its variants with times and errors. Throws InputError naming `file` for text that is no such
+// document.
+std::string resultsMarkdown(const std::string& json, const std::string& file);
+
+// The command that makes a point's picture again, and the one that measures its times again. Files are
+// absolute, so that both run from wherever the reader stands; what they make lands there.
 std::string renderCommand(const Sweep& sweep, const SweepScene& scene, const SweepPoint& point);
+std::string timesCommand(const Sweep& sweep, const SweepPoint& point);
+// The command of the whole sweep. One that comes with Kestrel is named as from the root of its tree
+// ("graphs/sweeps/snap.json"), another as it was named.
+std::string sweepCommand(const Sweep& sweep);
 // A word as a shell takes it.
 std::string shellWord(const std::string& word);
 
 // ---- folders
+
+class SweepManifest;
 
 // The files of a sweep's results under one folder.
 class SweepFolder {
 public:
     SweepFolder(std::filesystem::path folder, const Sweep& sweep);
 
-    // Makes the folder ready. A folder that holds results is refused unless `resume`; one of another sweep
-    // (hash) or, with `machine`, of another machine is refused always. Throws InputError saying so.
+    // Makes the folder ready. A folder that holds results is refused unless `resume`. Variants, values and
+    // scenes that the sweep has gained join it; where something that is measured would come out otherwise, it
+    // is refused with every cause; and, with `machine`, where another machine measured. Throws InputError.
     void begin(bool resume, const SweepMachine* machine) const;
-    // The hash of the results that it holds; empty if there are none.
-    [[nodiscard]] std::string heldHash() const;
 
     [[nodiscard]] std::optional<SweepReferenceRecord> reference(const SweepScene& scene) const;
     [[nodiscard]] std::optional<SweepPicture> picture(const SweepUnit& unit, const SweepPoint& point) const;
@@ -173,14 +187,14 @@ public:
     void write(const SweepUnit& unit, const SweepPoint& point, const SweepRepetition& repetition) const;
     void write(const SweepMachine& machine) const;
 
-    // Takes every part and picture of another folder of the same sweep. Throws InputError if that is of
-    // another sweep, or holds what is here already.
+    // Takes every part and picture of another folder of the same sweep. Throws InputError if that was
+    // measured otherwise, with every cause, or holds what is here already.
     void merge(const SweepFolder& other) const;
 
     // What it holds, as rows in the order of the sweep.
     [[nodiscard]] SweepResults gather(const std::vector<SweepPoint>& points,
                                       const std::vector<SweepUnit>& units) const;
-    // results.json, results.csv, index.html.
+    // results.json, results.csv, results.md, index.html.
     void writeResults(const SweepResults& results) const;
 
     [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
@@ -190,6 +204,8 @@ public:
     [[nodiscard]] std::string referenceName(const SweepScene& scene, const std::string& ending) const;
 
 private:
+    // Throws InputError with every cause why what was measured under `held` cannot stand beside `now`.
+    void refuseChanges(const SweepManifest& held, const SweepManifest& now) const;
     [[nodiscard]] std::filesystem::path pointFolder(const SweepUnit& unit, const SweepPoint& point) const;
     std::filesystem::path folder_;
     const Sweep& sweep_;

@@ -1,6 +1,7 @@
 #include "measure/sweep_run.h"
 #include "core/files.h"
 #include "core/hash.h"
+#include "core/log.h"
 #include "core/spin.h"
 #include "execute/renderer.h"
 #include "gl/context.h"
@@ -120,7 +121,9 @@ private:
         }
         const SweepScene& scene = sweep_.scenes[static_cast<size_t>(unit.scene)];
         tell(scene.name, false);
-        loaded_ = loadScene(scene.source, sweep_.file.has_parent_path() ? sweep_.file.parent_path() : ".");
+        loaded_ = loadScene(scene.source, sweep_.file.has_parent_path() ? sweep_.file.parent_path() : ".",
+                            {.allowOutside = sweep_.allowOutside});
+        for (const std::string& warning : loaded_.warnings) logWarning("{}: {}", scene.name, warning);
         takeReference(scene);
 
         std::vector<Candidate> candidates;
@@ -177,13 +180,10 @@ private:
         return renderer;
     }
 
-    // When the last frame of a moving picture is, as the renderer counts it.
+    // When the last frame of a moving picture is.
     [[nodiscard]] double timeOfPicture(double duration) const {
         double time = 0;
-        for (int i = 1; i < sweep_.frames; ++i) {
-            time += 1.0 / 60;
-            if (time > duration) time = duration > 0 ? std::fmod(time, duration) : 0;
-        }
+        for (int i = 1; i < sweep_.frames; ++i) time = timeAfter(time, duration);
         return time;
     }
 

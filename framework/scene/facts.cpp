@@ -54,6 +54,7 @@ void countLights(const Scene& scene, const std::vector<bool>& moving, SceneFacts
             break;
         case LightKind::Spot:
             ++facts.spotLights;
+            if (light.outerCone > wideSpotCone) ++facts.wideSpotLights;
             break;
         case LightKind::Directional:
             ++facts.directionalLights;
@@ -98,14 +99,17 @@ SceneFacts gatherFacts(const Scene& scene) {
     const std::vector<bool> moving = movingNodes(scene);
     countGeometry(scene, facts);
     countLights(scene, moving, facts);
-    for (const Camera& camera : scene.cameras)
+    for (const Camera& camera : scene.cameras) {
         facts.cameraMoves |= camera.node >= 0 && moving[static_cast<size_t>(camera.node)];
+        facts.cameras.push_back(camera.name);
+    }
     facts.materials = static_cast<std::uint32_t>(scene.materials.size());
     facts.images = static_cast<std::uint32_t>(scene.images.size());
-    facts.colourTextureArrays =
-        static_cast<std::uint32_t>(textureArrays(scene, TextureRole::Colour).arrays.size());
-    facts.dataTextureArrays =
-        static_cast<std::uint32_t>(textureArrays(scene, TextureRole::Data).arrays.size());
+    const TextureArrays colours = textureArrays(scene, TextureRole::Colour),
+                        data = textureArrays(scene, TextureRole::Data);
+    facts.colourTextureArrays = static_cast<std::uint32_t>(colours.arrays.size());
+    facts.dataTextureArrays = static_cast<std::uint32_t>(data.arrays.size());
+    facts.hasTiledTextures = colours.tiled() || data.tiled();
     facts.duration = scene.duration();
     measure(scene, facts);
     return facts;

@@ -1,5 +1,6 @@
 // Completing a scene: flat normals, tangents, origin, a default camera.
 #include "core/error.h"
+#include "scene/camera_names.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
 #include "scene/timeline_bounds.h"
@@ -184,6 +185,7 @@ void finishScene(Scene& scene) {
                         "most {:g} is drawn",
                         bounds.radius, largest));
     scene.origin = bounds.empty ? glm::dvec3(scene.rootTransform[3]) : bounds.centre();
+    nameCamerasApart(scene.cameras);
     if (!scene.cameras.empty()) return;
     const glm::dmat4 identity(1);
     addDefaultCamera(scene, scene.rootTransform == identity ? bounds : timelineBounds(scene, identity));

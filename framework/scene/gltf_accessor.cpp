@@ -1,4 +1,5 @@
 #include "scene/gltf_accessor.h"
+#include "scene/gltf_views.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -97,13 +98,44 @@ AccessorReader::AccessorReader(const GltfFile& file, const tinygltf::Model& mode
     , floats_(model.accessors.size())
     , integers_(model.accessors.size()) {}
 
-size_t AccessorReader::count(int accessor) const {
-    return model_.accessors[static_cast<size_t>(accessor)].count;
+AccessorReader::Form AccessorReader::formOf(int accessor) const {
+    const tinygltf::Accessor& source = model_.accessors[static_cast<size_t>(accessor)];
+    if (const auto found = replaced_.find(accessor); found != replaced_.end()) {
+        const AccessorData& data = *found->second;
+        int type = data.componentType;
+        // The accessor says how the bits are meant.
+        if (isUnsigned(source.componentType) && type == TINYGLTF_COMPONENT_TYPE_BYTE)
+            type = TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+        if (isUnsigned(source.componentType) && type == TINYGLTF_COMPONENT_TYPE_SHORT)
+            type = TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+        return {data.count, type, data.components, source.normalized};
+    }
+    return {source.count, source.componentType,
+            tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(source.type)), source.normalized};
 }
 
-int AccessorReader::components(int accessor) const {
-    return tinygltf::GetNumComponentsInType(
-        static_cast<std::uint32_t>(model_.accessors[static_cast<size_t>(accessor)].type));
+size_t AccessorReader::count(int accessor) const { return formOf(accessor).count; }
+int AccessorReader::components(int accessor) const { return formOf(accessor).components; }
+
+void AccessorReader::replace(int accessor, const AccessorData* data) {
+    floats_[static_cast<size_t>(accessor)].reset();
+    integers_[static_cast<size_t>(accessor)].reset();
+    if (data == nullptr)
+        replaced_.erase(accessor);
+    else
+        replaced_[accessor] = data;
+}
+
+void AccessorReader::spend(std::uint64_t bytes, const std::string& what) {
+    if (bytes > bytesLeft())
+        failGltf(file_, fmt::format("{} takes {} bytes; at most {} are decoded for one file", what, bytes,
+                                    file_.limits.decodedBytes));
+    decodedBytes_ += bytes;
+}
+
+const std::string* AccessorReader::unreadable(int accessor) const {
+    const auto found = file_.unreadable.find(static_cast<size_t>(accessor));
+    return found == file_.unreadable.end() ? nullptr : &found->second;
 }
 
 void AccessorReader::fail(int accessor, const std::string& what, const std::string& message) const {
@@ -114,32 +146,28 @@ AccessorReader::Layout AccessorReader::checkedView(int accessor, int bufferView,
                                                    size_t elementSize, size_t count,
                                                    const std::string& what) const {
     const tinygltf::BufferView& view = model_.bufferViews[static_cast<size_t>(bufferView)];
-    const std::vector<std::byte>& buffer = file_.buffers[static_cast<size_t>(view.buffer)];
-    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
-        failGltf(file_,
-                 fmt::format("bufferViews[{}] has bytes {} to {} of buffers[{}], which has {}", bufferView,
-                             view.byteOffset, view.byteOffset + view.byteLength, view.buffer, buffer.size()));
+    const std::span<const std::byte> bytes = gltfView(file_, static_cast<size_t>(bufferView));
     const size_t stride = view.byteStride == 0 ? elementSize : view.byteStride;
     if (stride < elementSize)
         fail(accessor, what, fmt::format("has elements of {} bytes in a stride of {}", elementSize, stride));
     // Without overflow: the last element must begin at least elementSize before the end.
-    const bool begins = byteOffset <= view.byteLength && elementSize <= view.byteLength - byteOffset;
-    if (!begins || count - 1 > (view.byteLength - byteOffset - elementSize) / stride)
+    const size_t length = bytes.size();
+    const bool begins = byteOffset <= length && elementSize <= length - byteOffset;
+    if (!begins || count - 1 > (length - byteOffset - elementSize) / stride)
         fail(accessor, what,
              fmt::format(
                  "has {} elements of {} bytes from byte {} on, beyond bufferViews[{}], which has {} bytes",
-                 count, elementSize, byteOffset, bufferView, view.byteLength));
-    return {buffer.data() + view.byteOffset + byteOffset, stride};
+                 count, elementSize, byteOffset, bufferView, length));
+    return {bytes.data() + byteOffset, stride};
 }
 
 void AccessorReader::checkType(int accessor, int wanted, const std::string& what) const {
     if (components(accessor) != wanted) fail(accessor, what, fmt::format("is not {}", typeName(wanted)));
 }
 
-void AccessorReader::spend(int accessor, const std::string& what) {
+void AccessorReader::spendOn(int accessor, const std::string& what) {
     const std::uint64_t values = static_cast<std::uint64_t>(components(accessor));
-    const std::uint64_t left = file_.limits.decodedBytes - decodedBytes_;
-    if (count(accessor) > left / (4 * values))
+    if (count(accessor) > bytesLeft() / (4 * values))
         fail(accessor, what,
              fmt::format("has {} elements; at most {} bytes are decoded for one file", count(accessor),
                          file_.limits.decodedBytes));
@@ -149,21 +177,27 @@ void AccessorReader::spend(int accessor, const std::string& what) {
 template<class Out, class Convert>
 std::vector<Out> AccessorReader::read(int accessor, int wanted, const std::string& what,
                                       const Convert& convert) {
+    if (const std::string* reason = unreadable(accessor)) fail(accessor, what, *reason);
     checkType(accessor, wanted, what);
     const tinygltf::Accessor& source = model_.accessors[static_cast<size_t>(accessor)];
-    const size_t size = componentSize(source.componentType);
-    if (size == 0) fail(accessor, what, fmt::format("has the component type {}", source.componentType));
+    const Form form = formOf(accessor);
+    const size_t size = componentSize(form.componentType);
+    if (size == 0) fail(accessor, what, fmt::format("has the component type {}", form.componentType));
     const size_t values = static_cast<size_t>(wanted);
     Layout layout;
-    if (source.bufferView >= 0)
-        layout =
-            checkedView(accessor, source.bufferView, source.byteOffset, size * values, source.count, what);
-    spend(accessor, what);
-    std::vector<Out> out(source.count * values, Out{0});
-    for (size_t i = 0; layout.data != nullptr && i < source.count; ++i)
+    const auto replaced = replaced_.find(accessor);
+    if (replaced != replaced_.end())
+        layout = {replaced->second->bytes.data(), size * values};
+    else if (source.bufferView >= 0)
+        layout = checkedView(accessor, source.bufferView, source.byteOffset, size * values, form.count, what);
+    spendOn(accessor, what);
+    // Without a buffer view all elements are zero (glTF 2.0, 3.6.2.1).
+    std::vector<Out> out(form.count * values, Out{0});
+    for (size_t i = 0; layout.data != nullptr && i < form.count; ++i)
         for (size_t k = 0; k < values; ++k)
-            out[i * values + k] = convert(layout.data + i * layout.stride + k * size, source);
-    if (source.sparse.isSparse) readSparse(accessor, wanted, what, convert, out);
+            out[i * values + k] = convert(layout.data + i * layout.stride + k * size, form);
+    if (source.sparse.isSparse && replaced == replaced_.end())
+        readSparse(accessor, wanted, what, convert, out);
     return out;
 }
 
@@ -171,6 +205,7 @@ template<class Out, class Convert>
 void AccessorReader::readSparse(int accessor, int wanted, const std::string& what, const Convert& convert,
                                 std::vector<Out>& out) const {
     const tinygltf::Accessor& source = model_.accessors[static_cast<size_t>(accessor)];
+    const Form form = formOf(accessor);
     const auto& sparse = source.sparse;
     const size_t size = componentSize(source.componentType), values = static_cast<size_t>(wanted);
     const size_t changed = static_cast<size_t>(sparse.count);
@@ -191,7 +226,7 @@ void AccessorReader::readSparse(int accessor, int wanted, const std::string& wha
             fail(accessor, what,
                  fmt::format("has the sparse index {}, but {} elements", element, source.count));
         for (size_t k = 0; k < values; ++k)
-            out[element * values + k] = convert(data.data + i * data.stride + k * size, source);
+            out[element * values + k] = convert(data.data + i * data.stride + k * size, form);
     }
 }
 
@@ -201,8 +236,8 @@ const std::vector<float>& AccessorReader::floats(int accessor, int wanted, const
         checkType(accessor, wanted, what);
         return *kept;
     }
-    kept = read<float>(accessor, wanted, what, [](const std::byte* bytes, const tinygltf::Accessor& source) {
-        return toFloat(bytes, source.componentType, source.normalized);
+    kept = read<float>(accessor, wanted, what, [](const std::byte* bytes, const Form& form) {
+        return toFloat(bytes, form.componentType, form.normalized);
     });
     for (size_t i = 0; i < kept->size(); ++i)
         if (!std::isfinite((*kept)[i]))
@@ -219,12 +254,11 @@ const std::vector<std::uint32_t>& AccessorReader::integers(int accessor, int wan
         checkType(accessor, wanted, what);
         return *kept;
     }
-    if (!isUnsigned(model_.accessors[static_cast<size_t>(accessor)].componentType))
-        fail(accessor, what, "is not of unsigned integers");
-    kept = read<std::uint32_t>(accessor, wanted, what,
-                               [](const std::byte* bytes, const tinygltf::Accessor& source) {
-                                   return toInteger(bytes, source.componentType);
-                               });
+    if (const std::string* reason = unreadable(accessor)) fail(accessor, what, *reason);
+    if (!isUnsigned(formOf(accessor).componentType)) fail(accessor, what, "is not of unsigned integers");
+    kept = read<std::uint32_t>(accessor, wanted, what, [](const std::byte* bytes, const Form& form) {
+        return toInteger(bytes, form.componentType);
+    });
     return *kept;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "scene/gltf_container.h"
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,13 @@ struct Accessor;
 
 namespace kestrel {
 
+// Elements without gaps that take the place of an accessor's own.
+struct AccessorData {
+    std::vector<std::byte> bytes;
+    size_t count = 0;
+    int componentType = 0, components = 0;
+};
+
 // Reads each accessor once and keeps it, so that what many primitives share is neither read nor counted
 // twice. All functions take an index into the model's accessors and `what`, the user that messages name, and
 // throw InputError for a wrong type, for data outside its buffer view, and beyond GltfLimits::decodedBytes in
@@ -23,6 +31,15 @@ public:
 
     [[nodiscard]] size_t count(int accessor) const;
     [[nodiscard]] int components(int accessor) const; // 1, 2, 3, 4, 9 or 16
+    // Why the accessor cannot be read at all (GltfFile::unreadable); nullptr if it can. Reading it throws.
+    [[nodiscard]] const std::string* unreadable(int accessor) const;
+
+    // From now on `accessor` has these elements (nullptr: its own), until it gets others; what it gave before
+    // is invalid. Whether they are normalized is still for the accessor to say. `data` must stay where it is.
+    void replace(int accessor, const AccessorData* data);
+    // Counts bytes that are decoded elsewhere towards GltfLimits::decodedBytes; throws beyond them.
+    void spend(std::uint64_t bytes, const std::string& what);
+    [[nodiscard]] std::uint64_t bytesLeft() const { return file_.limits.decodedBytes - decodedBytes_; }
 
     // `components` floats an element: floats as they are (NaN and infinity are refused), normalized integers
     // as fractions, other integers as numbers.
@@ -36,11 +53,18 @@ private:
         const std::byte* data = nullptr;
         size_t stride = 0;
     };
+    // What an accessor is, by itself or by what replaces it.
+    struct Form {
+        size_t count = 0;
+        int componentType = 0, components = 0;
+        bool normalized = false;
+    };
+    [[nodiscard]] Form formOf(int accessor) const;
     [[noreturn]] void fail(int accessor, const std::string& what, const std::string& message) const;
     Layout checkedView(int accessor, int bufferView, size_t byteOffset, size_t elementSize, size_t count,
                        const std::string& what) const;
     void checkType(int accessor, int components, const std::string& what) const;
-    void spend(int accessor, const std::string& what);
+    void spendOn(int accessor, const std::string& what);
     template<class Out, class Convert>
     std::vector<Out> read(int accessor, int components, const std::string& what, const Convert& convert);
     template<class Out, class Convert>
@@ -51,6 +75,7 @@ private:
     const tinygltf::Model& model_;
     std::vector<std::optional<std::vector<float>>> floats_;
     std::vector<std::optional<std::vector<std::uint32_t>>> integers_;
+    std::map<int, const AccessorData*> replaced_;
     std::uint64_t decodedBytes_ = 0;
 };
 

@@ -1,5 +1,6 @@
 // Animations of a glTF file.
 #include "scene/gltf_context.h"
+#include "scene/gltf_schema.h"
 #include <fmt/format.h>
 #include <map>
 #include <optional>
@@ -16,9 +17,11 @@ std::optional<AnimatedPath> pathOf(const std::string& name) {
     return std::nullopt;
 }
 
-Interpolation interpolationOf(const std::string& name) {
+std::optional<Interpolation> interpolationOf(const std::string& name) {
     if (name == "STEP") return Interpolation::Step;
-    return name == "CUBICSPLINE" ? Interpolation::CubicSpline : Interpolation::Linear;
+    if (name == "LINEAR" || name.empty()) return Interpolation::Linear;
+    if (name == "CUBICSPLINE") return Interpolation::CubicSpline;
+    return std::nullopt;
 }
 
 size_t targetsOf(const Scene& scene, const Node& node) {
@@ -28,9 +31,16 @@ size_t targetsOf(const Scene& scene, const Node& node) {
 }
 
 // Why a channel has no effect here, or empty.
-std::string reasonToIgnore(const GltfContext& context, const tinygltf::AnimationChannel& source) {
+std::string reasonToIgnore(const GltfContext& context, const tinygltf::AnimationChannel& source,
+                           const tinygltf::AnimationSampler& sampler) {
     const std::optional<AnimatedPath> path = pathOf(source.target_path);
     if (!path) return fmt::format("animations of '{}' are ignored", source.target_path.substr(0, 60));
+    if (!interpolationOf(sampler.interpolation))
+        return fmt::format("animations with the interpolation '{}' are ignored",
+                           sampler.interpolation.substr(0, 60));
+    for (const int accessor : {sampler.input, sampler.output})
+        if (const std::string* reason = context.accessors.unreadable(accessor))
+            return fmt::format("accessors[{}] {}: animations by it are ignored", accessor, *reason);
     const Node& node = context.scene.nodes[static_cast<size_t>(source.target_node)];
     if (*path == AnimatedPath::Weights)
         return targetsOf(context.scene, node) == 0
@@ -40,7 +50,11 @@ std::string reasonToIgnore(const GltfContext& context, const tinygltf::Animation
 }
 
 std::vector<float> readTimes(GltfContext& context, int accessor, const std::string& what) {
-    const std::vector<float>& times = context.accessors.floats(accessor, 1, what);
+    std::vector<float> times = context.accessors.floats(accessor, 1, what);
+    if (times.front() < 0 && times.front() >= -static_cast<float>(gltfRounding)) {
+        context.warn(fmt::format("{} begins at {}, which is read as 0", what, times.front()));
+        times.front() = 0;
+    }
     if (times.front() < 0) context.fail(what + " begins before 0");
     for (size_t i = 0; i + 1 < times.size(); ++i)
         if (!(times[i] < times[i + 1]))
@@ -54,15 +68,15 @@ std::optional<AnimationChannel> readChannel(GltfContext& context, const tinygltf
     if (source.sampler < 0 || static_cast<size_t>(source.sampler) >= animation.samplers.size())
         context.fail(fmt::format("{}.sampler is {}, but there are {} samplers", what, source.sampler,
                                  animation.samplers.size()));
-    if (const std::string reason = reasonToIgnore(context, source); !reason.empty()) {
+    const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<size_t>(source.sampler)];
+    if (const std::string reason = reasonToIgnore(context, source, sampler); !reason.empty()) {
         context.warn(reason);
         return std::nullopt;
     }
-    const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<size_t>(source.sampler)];
     AnimationChannel channel;
     channel.node = source.target_node;
     channel.path = *pathOf(source.target_path);
-    channel.interpolation = interpolationOf(sampler.interpolation);
+    channel.interpolation = interpolationOf(sampler.interpolation).value_or(Interpolation::Linear);
     context.spend(context.accessors.count(sampler.input), sizeof(float), what);
     channel.times = readTimes(context, sampler.input, what + " input");
     size_t components = channel.path == AnimatedPath::Rotation ? 4 : 3;
@@ -85,6 +99,9 @@ void readGltfAnimations(GltfContext& context) {
     std::set<std::pair<int, AnimatedPath>> driven;
     for (size_t i = 0; i < context.model.animations.size(); ++i) {
         const tinygltf::Animation& source = context.model.animations[i];
+        // tinygltf drops channels without a node, whose target is told by an extension.
+        if (source.channels.size() < context.file.document["animations"][i]["channels"].size())
+            context.warn("animations of what is no node are ignored");
         Animation animation;
         animation.name = source.name;
         for (size_t j = 0; j < source.channels.size(); ++j) {

@@ -1,12 +1,11 @@
 #include "scene/gltf_container.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "scene/gltf_views.h"
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <fmt/format.h>
-#include <optional>
 #include <span>
 #include <string_view>
 
@@ -88,73 +87,22 @@ void readChunks(GltfFile& file, std::span<const std::byte> bytes) {
     }
 }
 
-std::optional<int> base64Digit(char c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    if (c == '+') return 62;
-    if (c == '/') return 63;
-    return std::nullopt;
-}
-
-// RFC 4648; padding may be left out. Nothing for any other character.
-std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
-    while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-    std::vector<std::byte> bytes;
-    bytes.reserve(text.size() * 3 / 4);
-    std::uint32_t bits = 0;
-    int count = 0;
-    for (const char c : text) {
-        const std::optional<int> digit = base64Digit(c);
-        if (!digit) return std::nullopt;
-        bits = (bits << 6) | static_cast<std::uint32_t>(*digit);
-        count += 6;
-        if (count < 8) continue;
-        count -= 8;
-        bytes.push_back(static_cast<std::byte>((bits >> count) & 0xFF));
-    }
-    if (count == 6) return std::nullopt; // a single digit makes no byte
-    return bytes;
-}
-
-int hexDigit(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return -1;
-}
-
-// %20 and the like, RFC 3986; a stray '%' stands for itself.
-std::string decodePercent(std::string_view uri) {
-    std::string text;
-    for (size_t i = 0; i < uri.size(); ++i) {
-        const int high = uri[i] == '%' && i + 2 < uri.size() ? hexDigit(uri[i + 1]) : -1;
-        const int low = high >= 0 ? hexDigit(uri[i + 2]) : -1;
-        if (low < 0) {
-            text += uri[i];
-            continue;
-        }
-        text += static_cast<char>(high * 16 + low);
-        i += 2;
-    }
-    return text;
-}
-
-// "http:", "file:": one letter alone is no scheme but could be a drive; it is refused as a path then.
-bool hasScheme(std::string_view uri) {
-    const size_t colon = uri.find(':');
-    return colon != uri.npos && uri.find('/') > colon;
-}
-
 } // namespace
+
+void GltfWarnings::add(const std::string& message) {
+    constexpr size_t most = 100;
+    if (list_.size() > most || std::find(list_.begin(), list_.end(), message) != list_.end()) return;
+    list_.push_back(list_.size() < most ? message : "there are further warnings");
+}
 
 void failGltf(const GltfFile& file, const std::string& message) {
     throw InputError(Location{file.path.string()}, message);
 }
 
-GltfFile readGltfFile(const fs::path& path, const GltfLimits& limits) {
+GltfFile readGltfFile(const fs::path& path, const SceneOptions& options, const GltfLimits& limits) {
     GltfFile file;
     file.path = path;
+    file.options = options;
     file.limits = limits;
     const std::vector<std::byte> bytes = readBytes(path);
     if (bytes.empty()) failGltf(file, "the file is empty");
@@ -166,31 +114,6 @@ GltfFile readGltfFile(const fs::path& path, const GltfLimits& limits) {
     return file;
 }
 
-std::vector<std::byte> readUri(const GltfFile& file, const std::string& uri, const std::string& what) {
-    if (uri.starts_with("data:")) {
-        const size_t comma = uri.find(',');
-        const std::string_view head = std::string_view(uri).substr(0, comma);
-        if (comma == uri.npos || !head.ends_with(";base64"))
-            failGltf(file, what + " has a data URI that is not base64");
-        std::optional<std::vector<std::byte>> bytes = decodeBase64(std::string_view(uri).substr(comma + 1));
-        if (!bytes) failGltf(file, what + " has a data URI with broken base64");
-        return std::move(*bytes);
-    }
-    if (hasScheme(uri)) failGltf(file, fmt::format("{} is at '{}'; only files are read", what, uri));
-    const std::string name = decodePercent(uri);
-    if (name.empty() || name.find('\0') != name.npos) failGltf(file, what + " has an unusable URI");
-    try {
-        return readBytes(pathInside(file.path.parent_path(), name));
-    } catch (const InputError& error) {
-        // One line that names both the file that asks and the one that is asked for.
-        const Problem& problem = error.problems().front();
-        const std::string which = problem.where.file.empty() ? "" : fmt::format("'{}' ", uri);
-        failGltf(file, fmt::format("{}: {}{}", what, which, problem.message));
-    } catch (const fs::filesystem_error&) {
-        failGltf(file, fmt::format("{}: '{}' is no usable file name", what, uri.substr(0, 100)));
-    }
-}
-
 void readBuffers(GltfFile& file) {
     const auto buffers = file.document.find("buffers");
     if (buffers == file.document.end()) return;
@@ -200,6 +123,10 @@ void readBuffers(GltfFile& file) {
         const std::string what = fmt::format("buffers[{}]", i);
         const std::uint64_t stated = buffer.at("byteLength").get<std::uint64_t>();
         std::vector<std::byte> bytes;
+        if (hasMeshopt() && isFallbackBuffer(buffer)) {
+            file.buffers.emplace_back();
+            continue;
+        }
         if (buffer.contains("uri"))
             bytes = readUri(file, buffer["uri"].get_ref<const std::string&>(), what);
         else if (i == 0)

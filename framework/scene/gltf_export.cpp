@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "scene/gltf_writer.h"
+#include "scene/skin_weights.h"
 #include <algorithm>
 #include <limits>
 
@@ -67,8 +68,11 @@ OrderedJson primitiveJson(GltfWriter& writer, const Primitive& primitive) {
     addAttribute<2>(writer, attributes, "TEXCOORD_0", primitive.texCoords);
     addAttribute<2>(writer, attributes, "TEXCOORD_1", primitive.texCoords1);
     addAttribute<4>(writer, attributes, "COLOR_0", primitive.colours);
-    addAttribute<4>(writer, attributes, "WEIGHTS_0", primitive.weights);
-    if (!primitive.joints.empty()) attributes["JOINTS_0"] = addJoints(writer, primitive.joints);
+    std::vector<glm::uvec4> joints = primitive.joints;
+    std::vector<glm::vec4> weights = primitive.weights;
+    for (size_t i = 0; i < weights.size(); ++i) mergeJoints(joints[i], weights[i]);
+    addAttribute<4>(writer, attributes, "WEIGHTS_0", weights);
+    if (!joints.empty()) attributes["JOINTS_0"] = addJoints(writer, joints);
     OrderedJson json;
     json["attributes"] = std::move(attributes);
     json["indices"] =

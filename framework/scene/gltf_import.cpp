@@ -1,22 +1,41 @@
 #include "scene/gltf_import.h"
+#include "scene/gltf_additions.h"
 #include "scene/gltf_context.h"
+#include "scene/gltf_draco.h"
+#include "scene/gltf_image.h"
 #include "scene/gltf_schema.h"
+#include "scene/gltf_views.h"
 #include <algorithm>
-#include <array>
 #include <fmt/format.h>
 #include <set>
+#include <string_view>
 
 namespace kestrel {
 namespace {
 
-constexpr std::array supportedExtensions{"KHR_lights_punctual",  "KHR_materials_emissive_strength",
-                                         "KHR_materials_ior",    "KHR_materials_transmission",
-                                         "KHR_materials_unlit",  "KHR_mesh_quantization",
-                                         "KHR_texture_transform"};
-
 bool isSupported(const std::string& extension) {
-    return std::find(supportedExtensions.begin(), supportedExtensions.end(), extension) !=
-           supportedExtensions.end();
+    constexpr std::string_view always[] = {"EXT_mesh_gpu_instancing",
+                                           "KHR_lights_punctual",
+                                           "KHR_materials_emissive_strength",
+                                           "KHR_materials_ior",
+                                           "KHR_materials_pbrSpecularGlossiness",
+                                           "KHR_materials_transmission",
+                                           "KHR_materials_unlit",
+                                           "KHR_mesh_quantization",
+                                           "KHR_texture_transform"};
+    if (std::find(std::begin(always), std::end(always), extension) != std::end(always)) return true;
+    if (extension == "KHR_draco_mesh_compression") return hasDraco();
+    if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression") return hasMeshopt();
+    return extension == "EXT_texture_webp" && hasWebp();
+}
+
+// What to do about an extension that is required and lacks; empty where there is nothing to say.
+std::string remedy(const std::string& extension) {
+    if (extension == "KHR_texture_basisu")
+        return " (no decoder is packaged: store the textures as PNG, JPEG or WebP)";
+    if (extension == "KHR_draco_mesh_compression") return " (this build lacks libdraco-dev)";
+    if (extension.ends_with("_meshopt_compression")) return " (this build lacks libmeshoptimizer-dev)";
+    return extension == "EXT_texture_webp" ? " (this build lacks libwebp-dev)" : "";
 }
 
 // The names of all extensions that occur anywhere: files forget to list them in extensionsUsed.
@@ -30,29 +49,49 @@ void collectExtensions(const nlohmann::json& value, std::set<std::string>& names
         if (below.is_structured()) collectExtensions(below, names);
 }
 
-// An accessor without data reads as zeros: where a compression that Kestrel lacks holds the data, that would
-// draw a heap of points at the origin.
-void refusePrimitivesWithoutData(const GltfFile& file) {
+// The strings of the array `name` at the top level of a document that may be wrong anywhere.
+std::vector<std::string> stringsOf(const nlohmann::json& document, const char* name) {
+    std::vector<std::string> strings;
+    const auto array = document.find(name);
+    if (array == document.end() || !array->is_array()) return strings;
+    for (const nlohmann::json& one : *array)
+        if (one.is_string()) strings.push_back(one.get<std::string>());
+    return strings;
+}
+
+// Comes before everything else: what an unknown extension that is required makes of the rest, nobody knows.
+void checkExtensions(GltfFile& file) {
+    std::string lacking;
+    for (const std::string& name : stringsOf(file.document, "extensionsRequired"))
+        if (!isSupported(name)) lacking += (lacking.empty() ? "" : ", ") + name + remedy(name);
+    if (!lacking.empty()) failGltf(file, "requires extensions that Kestrel lacks: " + lacking);
+    const std::vector<std::string> listed = stringsOf(file.document, "extensionsUsed");
+    std::set<std::string> used(listed.begin(), listed.end());
+    collectExtensions(file.document, used);
+    for (const std::string& name : used)
+        if (!isSupported(name)) file.warnings.add(fmt::format("the extension {} is ignored", name));
+}
+
+// An accessor without data reads as zeros: where a compression that this build lacks holds the data, that
+// would draw a heap of points at the origin.
+void refuseCompressedPrimitives(const GltfFile& file) {
     const auto meshes = file.document.find("meshes");
-    if (meshes == file.document.end()) return;
-    const auto hasData = [&](const nlohmann::json& index) {
-        const nlohmann::json& accessor = file.document["accessors"][index.get<size_t>()];
-        return accessor.contains("bufferView") || accessor.contains("sparse");
-    };
+    if (hasDraco() || meshes == file.document.end()) return;
     for (size_t m = 0; m < meshes->size(); ++m) {
         const nlohmann::json& primitives = (*meshes)[m]["primitives"];
         for (size_t p = 0; p < primitives.size(); ++p) {
             const nlohmann::json& primitive = primitives[p];
-            const std::string what = fmt::format("meshes[{}].primitives[{}]", m, p);
-            const bool compressed = primitive.contains("extensions") &&
-                                    primitive["extensions"].contains("KHR_draco_mesh_compression");
-            for (const auto& [name, accessor] : primitive["attributes"].items())
-                if (compressed && !hasData(accessor))
+            if (!primitive.contains("extensions") ||
+                !primitive["extensions"].contains("KHR_draco_mesh_compression"))
+                continue;
+            for (const auto& [name, index] : primitive["attributes"].items()) {
+                const nlohmann::json& accessor = file.document["accessors"][index.get<size_t>()];
+                if (!accessor.contains("bufferView") && !accessor.contains("sparse"))
                     failGltf(file,
-                             what + " is stored by KHR_draco_mesh_compression alone, which Kestrel lacks");
-            if (primitive.contains("indices") &&
-                !file.document["accessors"][primitive["indices"].get<size_t>()].contains("bufferView"))
-                failGltf(file, what + ".indices refers to an accessor without a buffer view");
+                             fmt::format("meshes[{}].primitives[{}] is stored by KHR_draco_mesh_compression "
+                                         "alone, which this build lacks (libdraco-dev)",
+                                         m, p));
+            }
         }
     }
 }
@@ -68,6 +107,10 @@ tinygltf::Model parseModel(const GltfFile& file) {
             animation.erase("extensions");
             animation.erase("extras");
         }
+    // It insists on a buffer view for indices, which the document need not give: PrimitiveReader reads these.
+    if (const auto meshes = reduced.find("meshes"); meshes != reduced.end())
+        for (nlohmann::json& mesh : *meshes)
+            for (nlohmann::json& primitive : mesh["primitives"]) primitive.erase("indices");
     const std::string text = reduced.dump();
     tinygltf::TinyGLTF parser;
     tinygltf::Model model;
@@ -82,14 +125,6 @@ tinygltf::Model parseModel(const GltfFile& file) {
 }
 
 } // namespace
-
-void GltfContext::warn(const std::string& message) {
-    constexpr size_t most = 100;
-    if (scene.warnings.size() > most ||
-        std::find(scene.warnings.begin(), scene.warnings.end(), message) != scene.warnings.end())
-        return;
-    scene.warnings.push_back(scene.warnings.size() < most ? message : "there are further warnings");
-}
 
 void GltfContext::spend(std::uint64_t count, std::uint64_t size, const std::string& what) {
     const std::uint64_t left = file.limits.storedBytes - storedBytes;
@@ -108,35 +143,28 @@ double gltfNumber(const tinygltf::Value& object, const char* name, double otherw
     return object.Has(name) ? object.Get(name).GetNumberAsDouble() : otherwise;
 }
 
-void checkGltfExtensions(GltfContext& context) {
-    std::string lacking;
-    for (const std::string& name : context.model.extensionsRequired)
-        if (!isSupported(name)) lacking += (lacking.empty() ? "" : ", ") + name;
-    if (!lacking.empty()) context.fail("requires extensions that Kestrel lacks: " + lacking);
-    std::set<std::string> used(context.model.extensionsUsed.begin(), context.model.extensionsUsed.end());
-    collectExtensions(context.file.document, used);
-    for (const std::string& name : used)
-        if (!isSupported(name)) context.warn(fmt::format("the extension {} is ignored", name));
-}
-
-Scene importGltf(const std::filesystem::path& path, const GltfLimits& limits) {
-    GltfFile file = readGltfFile(path, limits);
+Scene importGltf(const std::filesystem::path& path, const SceneOptions& options, const GltfLimits& limits) {
+    GltfFile file = readGltfFile(path, options, limits);
+    checkExtensions(file);
+    setAsideAdditions(file);
     checkGltfSchema(file);
-    refusePrimitivesWithoutData(file);
+    refuseCompressedPrimitives(file);
     const tinygltf::Model model = parseModel(file);
     Scene scene;
     scene.name = path.filename().string();
     scene.source = path.string();
     AccessorReader accessors(file, model);
-    GltfContext context{file, model, accessors, scene, {}, 0};
-    checkGltfExtensions(context);
+    GltfContext context{file, model, accessors, scene};
     readBuffers(file);
+    decodeMeshoptViews(file);
     readGltfImages(context);
     readGltfMaterials(context);
     readGltfMeshes(context);
     readGltfNodes(context);
+    readGltfInstances(context);
     readGltfSkins(context);
     readGltfAnimations(context);
+    scene.warnings = file.warnings.list();
     return scene;
 }
 

@@ -8,11 +8,17 @@ namespace kestrel {
 
 // A stranger's file cannot make the program allocate without bound.
 struct GltfLimits {
-    std::uint64_t jsonValues = 4'000'000;                // and at most 64 levels deep
-    std::uint64_t pixels = std::uint64_t{1} << 28;       // of all images together
-    std::uint64_t decodedBytes = std::uint64_t{2} << 30; // of all accessors as floats, each once
+    std::uint64_t jsonValues = 4'000'000;          // and at most 64 levels deep
+    std::uint64_t pixels = std::uint64_t{1} << 28; // of all images together: reduced where they have more
+    std::uint64_t decodedPixels = std::uint64_t{1} << 32; // before they are reduced
+    // Of all accessors as floats, each once, and of what Draco decompresses; again of all decompressed buffer
+    // views.
+    std::uint64_t decodedBytes = std::uint64_t{2} << 30;
     std::uint64_t storedBytes = std::uint64_t{2} << 30; // of meshes and animations, which may share accessors
     std::uint64_t joints = 4'000'000;                   // of all skinned nodes, which may share skins
+    std::uint64_t instances =
+        1'000'000; // of EXT_mesh_gpu_instancing: evenly thinned out where there are more
+    std::uint64_t triangles = 64'000'000; // that instances may make, likewise
 };
 
 // Reads the file's default scene. finishScene() has not been called on the result. What the file asks for and
@@ -21,6 +27,7 @@ struct GltfLimits {
 // wrong types, indices out of range, data beyond its buffer, NaN and infinity, cycles and second parents in
 // the node hierarchy, files outside the folder, required extensions that Kestrel lacks, sizes above the
 // limits.
-Scene importGltf(const std::filesystem::path& file, const GltfLimits& limits = {});
+Scene importGltf(const std::filesystem::path& file, const SceneOptions& options = {},
+                 const GltfLimits& limits = {});
 
 } // namespace kestrel

@@ -1,63 +1,13 @@
-// Images, samplers, textures and materials of a glTF file.
+// Samplers, texture references and materials of a glTF file.
 #include "scene/gltf_context.h"
+#include "scene/gltf_image.h"
+#include "scene/gltf_specular.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <memory>
-#include <span>
-#include <stb_image.h>
 
 namespace kestrel {
 namespace {
-
-constexpr int maxImageSide = 16384;
-
-bool startsWith(std::span<const std::byte> bytes, std::initializer_list<unsigned> magic) {
-    return bytes.size() >= magic.size() &&
-           std::equal(magic.begin(), magic.end(), bytes.begin(),
-                      [](unsigned a, std::byte b) { return std::byte(a) == b; });
-}
-
-bool isReadable(std::span<const std::byte> bytes) {
-    return startsWith(bytes, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'}) ||
-           startsWith(bytes, {0xFF, 0xD8, 0xFF});
-}
-
-std::vector<std::byte> imageBytes(const GltfContext& context, const nlohmann::json& image,
-                                  const std::string& what) {
-    if (image.contains("uri")) return readUri(context.file, image["uri"].get_ref<const std::string&>(), what);
-    if (!image.contains("bufferView")) context.fail(what + " has neither uri nor bufferView");
-    const size_t index = image["bufferView"].get<size_t>();
-    const tinygltf::BufferView& view = context.model.bufferViews[index];
-    const std::vector<std::byte>& buffer = context.file.buffers[static_cast<size_t>(view.buffer)];
-    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
-        context.fail(fmt::format("{}: bufferViews[{}] lies beyond buffers[{}]", what, index, view.buffer));
-    const auto first = buffer.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
-    return {first, first + static_cast<std::ptrdiff_t>(view.byteLength)};
-}
-
-TextureImage decodeImage(const GltfContext& context, std::span<const std::byte> bytes,
-                         const std::string& what, std::uint64_t& pixelsLeft) {
-    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-    // A file is at most 2 GiB large, but stb counts in int.
-    if (bytes.size() > 0x7FFFFFFF) context.fail(what + " is too large");
-    const int size = static_cast<int>(bytes.size());
-    TextureImage image;
-    int channels = 0;
-    if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0)
-        context.fail(what + " is a broken image");
-    const std::uint64_t pixels =
-        static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
-    if (image.width > maxImageSide || image.height > maxImageSide || pixels > pixelsLeft)
-        context.fail(fmt::format("{} has {} x {} pixels; at most {} to a side and {} in all images are read",
-                                 what, image.width, image.height, maxImageSide, context.file.limits.pixels));
-    pixelsLeft -= pixels;
-    const std::unique_ptr<stbi_uc, void (*)(void*)> decoded(
-        stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4), stbi_image_free);
-    if (!decoded) context.fail(fmt::format("{} is a broken image: {}", what, stbi_failure_reason()));
-    image.rgba.assign(decoded.get(), decoded.get() + 4 * pixels);
-    return image;
-}
 
 Wrap wrapOf(GltfContext& context, int mode) {
     switch (mode) {
@@ -85,7 +35,8 @@ TextureRef textureRef(GltfContext& context, const auto& info) {
     TextureRef ref;
     if (info.index < 0) return ref;
     const tinygltf::Texture& texture = context.model.textures[static_cast<size_t>(info.index)];
-    if (texture.source < 0) {
+    const int source = gltfTextureSource(context, static_cast<size_t>(info.index));
+    if (source < 0) {
         context.warn(fmt::format("textures[{}] has no image that can be read and is ignored", info.index));
         return ref;
     }
@@ -106,7 +57,7 @@ TextureRef textureRef(GltfContext& context, const auto& info) {
         ref.wrapT = wrapOf(context, sampler.wrapT);
         ref.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
     }
-    ref.image = context.imageIndex[static_cast<size_t>(texture.source)];
+    ref.image = context.imageIndex[static_cast<size_t>(source)];
     return ref.present() ? ref : TextureRef{};
 }
 
@@ -137,6 +88,41 @@ void readExtensions(GltfContext& context, const tinygltf::Material& source, Mate
         material.ior = static_cast<float>(gltfNumber(*extension, "ior", 1.5));
 }
 
+// Of an extension, whose texture infos tinygltf keeps as values only.
+TextureRef textureRefOf(GltfContext& context, const nlohmann::json& extension, const char* name) {
+    const auto found = extension.find(name);
+    if (found == extension.end()) return {};
+    tinygltf::TextureInfo info;
+    info.index = (*found)["index"].get<int>();
+    info.texCoord = found->value("texCoord", 0);
+    const auto extensions = found->find("extensions");
+    if (extensions == found->end() || !extensions->contains("KHR_texture_transform"))
+        return textureRef(context, info);
+    tinygltf::Value::Object transform;
+    for (const auto& [key, value] : (*extensions)["KHR_texture_transform"].items())
+        if (value.is_number()) {
+            transform[key] = tinygltf::Value(value.get<double>());
+        } else if (value.is_array() && value.size() == 2) {
+            tinygltf::Value::Array pair;
+            for (const nlohmann::json& one : value) pair.emplace_back(one.get<double>());
+            transform[key] = tinygltf::Value(std::move(pair));
+        }
+    info.extensions["KHR_texture_transform"] = tinygltf::Value(std::move(transform));
+    return textureRef(context, info);
+}
+
+SpecularMaterial readSpecular(GltfContext& context, const nlohmann::json& extension) {
+    SpecularMaterial specular;
+    const auto diffuse = extension.value("diffuseFactor", std::vector<float>{1, 1, 1, 1});
+    const auto factor = extension.value("specularFactor", std::vector<float>{1, 1, 1});
+    for (int i = 0; i < 4; ++i) specular.diffuse[i] = diffuse[static_cast<size_t>(i)];
+    for (int i = 0; i < 3; ++i) specular.specular[i] = factor[static_cast<size_t>(i)];
+    specular.glossiness = extension.value("glossinessFactor", 1.0f);
+    specular.diffuseTexture = textureRefOf(context, extension, "diffuseTexture");
+    specular.specularTexture = textureRefOf(context, extension, "specularGlossinessTexture");
+    return specular;
+}
+
 Material readMaterial(GltfContext& context, const tinygltf::Material& source) {
     const tinygltf::PbrMetallicRoughness& surface = source.pbrMetallicRoughness;
     Material material;
@@ -155,34 +141,21 @@ Material readMaterial(GltfContext& context, const tinygltf::Material& source) {
     material.emissionTexture = textureRef(context, source.emissiveTexture);
     if (source.occlusionTexture.index >= 0) context.warn("occlusion textures are ignored");
     readExtensions(context, source, material);
+    const size_t index = static_cast<size_t>(&source - context.model.materials.data());
+    const nlohmann::json& json = context.file.document["materials"][index];
+    if (const auto extensions = json.find("extensions"); extensions != json.end())
+        if (const auto found = extensions->find("KHR_materials_pbrSpecularGlossiness");
+            found != extensions->end())
+            convertSpecular(context, readSpecular(context, *found), material);
     return material;
 }
 
 } // namespace
 
-void readGltfImages(GltfContext& context) {
-    const auto images = context.file.document.find("images");
-    if (images == context.file.document.end()) return;
-    std::uint64_t pixelsLeft = context.file.limits.pixels;
-    for (size_t i = 0; i < images->size(); ++i) {
-        const nlohmann::json& source = (*images)[i];
-        const std::string what = fmt::format("images[{}]", i);
-        const std::vector<std::byte> bytes = imageBytes(context, source, what);
-        context.imageIndex.push_back(-1);
-        if (!isReadable(bytes)) {
-            context.warn(what + " is neither PNG nor JPEG and is ignored");
-            continue;
-        }
-        TextureImage image = decodeImage(context, bytes, what, pixelsLeft);
-        image.name = source.value("name", "");
-        context.imageIndex.back() = static_cast<int>(context.scene.images.size());
-        context.scene.images.push_back(std::move(image));
-    }
-}
-
 void readGltfMaterials(GltfContext& context) {
     for (const tinygltf::Material& source : context.model.materials)
         context.scene.materials.push_back(readMaterial(context, source));
+    warnOfReducedImages(context);
 }
 
 } // namespace kestrel

@@ -1,6 +1,9 @@
 // Meshes of a glTF file: triangle lists from all triangle modes, vertex attributes, morph targets.
 #include "scene/geometry.h"
 #include "scene/gltf_context.h"
+#include "scene/gltf_draco.h"
+#include "scene/gltf_schema.h"
+#include "scene/skin_weights.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -32,10 +35,12 @@ std::vector<std::uint32_t> triangleCorners(int mode, size_t count) {
 // Reads one primitive; keeps the vertices that triangles use, in their order.
 class PrimitiveReader {
 public:
-    PrimitiveReader(GltfContext& context, const tinygltf::Primitive& source, std::string what)
+    PrimitiveReader(GltfContext& context, size_t mesh, size_t index, std::string what)
         : context_(context)
-        , source_(source)
-        , what_(std::move(what)) {}
+        , source_(context.model.meshes[mesh].primitives[index])
+        , indices_(context.file.document["meshes"][mesh]["primitives"][index].value("indices", -1))
+        , what_(std::move(what))
+        , draco_(context, mesh, index, what_) {}
 
     Primitive read() {
         Primitive primitive;
@@ -52,16 +57,17 @@ public:
 private:
     void readIndices(Primitive& primitive) {
         const size_t vertices = context_.accessors.count(positionAccessor_);
-        const std::vector<std::uint32_t>* indices = nullptr;
-        if (source_.indices >= 0)
-            indices = &context_.accessors.integers(source_.indices, 1, what_ + ".indices");
+        const std::vector<std::uint32_t>* indices = draco_.indices();
+        const int mode = indices != nullptr ? TINYGLTF_MODE_TRIANGLES : source_.mode;
+        if (indices == nullptr && indices_ >= 0)
+            indices = &context_.accessors.integers(indices_, 1, what_ + ".indices");
         const size_t count = indices ? indices->size() : vertices;
         // A strip or fan has up to three corners for each index.
         context_.spend(count, 3 * sizeof(std::uint32_t), what_);
-        if (source_.mode == TINYGLTF_MODE_TRIANGLES && count % 3 != 0)
+        if (mode == TINYGLTF_MODE_TRIANGLES && count % 3 != 0)
             context_.warn(
                 fmt::format("{} has {} indices: the last, incomplete triangle is ignored", what_, count));
-        primitive.indices = triangleCorners(source_.mode, count);
+        primitive.indices = triangleCorners(mode, count);
         if (indices)
             for (std::uint32_t& corner : primitive.indices) corner = (*indices)[corner];
         std::vector<std::uint32_t> newIndex(vertices, unused);
@@ -82,12 +88,22 @@ private:
     int attribute(const std::map<std::string, int>& attributes, const char* name, const std::string& what) {
         const auto found = attributes.find(name);
         if (found == attributes.end()) return -1;
+        if (const std::string* reason = context_.accessors.unreadable(found->second);
+            reason != nullptr && isDispensable(what, name)) {
+            context_.warn(fmt::format("{}.{} {}, and is ignored", what, name, *reason));
+            return -1;
+        }
         const size_t count = context_.accessors.count(found->second);
         const size_t vertices = context_.accessors.count(positionAccessor_);
         if (count != vertices)
             context_.fail(
                 fmt::format("{}.{} has {} elements, but there are {} vertices", what, name, count, vertices));
         return found->second;
+    }
+
+    // Without these the triangles still stand where they are.
+    [[nodiscard]] bool isDispensable(const std::string& what, std::string_view name) const {
+        return what != what_ || (name != "POSITION" && name != "JOINTS_0" && name != "WEIGHTS_0");
     }
 
     template<int N>
@@ -151,9 +167,14 @@ private:
             primitive.joints.emplace_back(joint[0], joint[1], joint[2], joint[3]);
         }
         for (glm::vec4& weights : primitive.weights) {
+            for (int k = 0; k < 4; ++k) {
+                if (weights[k] < -static_cast<float>(gltfRounding))
+                    context_.fail(what_ + ".WEIGHTS_0 has a negative weight");
+                if (weights[k] < 0)
+                    context_.warn(what_ + ".WEIGHTS_0 has weights below 0, which are read as 0");
+                weights[k] = std::max(weights[k], 0.0f);
+            }
             const float sum = weights.x + weights.y + weights.z + weights.w;
-            for (int k = 0; k < 4; ++k)
-                if (weights[k] < 0) context_.fail(what_ + ".WEIGHTS_0 has a negative weight");
             if (!std::isfinite(sum)) context_.fail(what_ + ".WEIGHTS_0 has weights that are out of range");
             // What already sums to 1 up to rounding stays as it is, to the bit.
             if (sum == 0)
@@ -161,6 +182,8 @@ private:
             else if (std::abs(sum - 1) > 1e-5f)
                 weights /= sum;
         }
+        for (size_t i = 0; i < primitive.weights.size(); ++i)
+            mergeJoints(primitive.joints[i], primitive.weights[i]);
     }
 
     // Unit length for what is not nearly so; the mean of the adjacent faces for what has no length at all.
@@ -206,12 +229,19 @@ private:
 
     GltfContext& context_;
     const tinygltf::Primitive& source_;
+    int indices_; // accessor; -1: none
     std::string what_;
+    DracoPrimitive draco_;
     int positionAccessor_ = -1;
     std::vector<std::uint32_t> kept_; // the file's vertices that triangles use
 };
 
 bool isDrawn(GltfContext& context, const tinygltf::Primitive& primitive) {
+    if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+        context.warn(
+            fmt::format("primitives of mode {}, which Kestrel does not know, are not drawn", primitive.mode));
+        return false;
+    }
     if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
         context.warn("points and lines are not drawn");
         return false;
@@ -230,7 +260,7 @@ Mesh readMesh(GltfContext& context, size_t index, std::uint64_t& trianglesLeft) 
     for (size_t i = 0; i < source.primitives.size(); ++i) {
         if (!isDrawn(context, source.primitives[i])) continue;
         const std::string what = fmt::format("meshes[{}].primitives[{}]", index, i);
-        Primitive primitive = PrimitiveReader(context, source.primitives[i], what).read();
+        Primitive primitive = PrimitiveReader(context, index, i, what).read();
         if (primitive.indices.empty()) continue;
         if (primitive.indices.size() / 3 > trianglesLeft)
             context.fail(fmt::format("the meshes have more than {} triangles", maxTriangles));

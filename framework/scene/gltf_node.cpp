@@ -1,9 +1,11 @@
 // Nodes of a glTF file with their hierarchy, cameras, lights, skins.
 #include "scene/animation.h"
 #include "scene/gltf_context.h"
+#include "scene/gltf_schema.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 #include <numbers>
 
 namespace kestrel {
@@ -26,8 +28,9 @@ void readTransform(const GltfContext& context, const tinygltf::Node& source, siz
     glm::dmat4 matrix;
     for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = source.matrix[static_cast<size_t>(i)];
     const glm::dvec4 lastRow(matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3]);
-    if (glm::any(glm::greaterThan(glm::abs(lastRow - glm::dvec4(0, 0, 0, 1)), glm::dvec4(1e-6))))
+    if (glm::any(glm::greaterThan(glm::abs(lastRow - glm::dvec4(0, 0, 0, 1)), glm::dvec4(gltfRounding))))
         context.fail(fmt::format("nodes[{}].matrix is not affine", index));
+    for (int i = 0; i < 4; ++i) matrix[i][3] = i == 3 ? 1 : 0;
     node.matrix = matrix;
 }
 
@@ -153,15 +156,23 @@ struct AreaLight {
     size_t index = 0; // its place among all lights
 };
 
-std::vector<AreaLight> readAreaLights(const GltfContext& context, const std::vector<int>& nodes) {
+std::vector<AreaLight> readAreaLights(GltfContext& context, const std::vector<int>& nodes) {
     std::vector<AreaLight> lights;
     for (const int node : nodes) {
         const nlohmann::json& json = context.file.document["nodes"][static_cast<size_t>(node)];
         if (!json.contains("extras") || !json["extras"].is_object()) continue;
         const auto found = json["extras"].find("KESTREL_area_light");
         if (found == json["extras"].end()) continue;
+        const std::string& kind = (*found)["kind"].get_ref<const std::string&>();
+        if (kind != "sphere" && kind != "rectangle") {
+            context.warn(
+                fmt::format("nodes[{}] has an area light of the kind '{}', which Kestrel does not know, "
+                            "and is ignored",
+                            node, kind.substr(0, 60)));
+            continue;
+        }
         AreaLight area;
-        area.light.kind = (*found)["kind"] == "sphere" ? LightKind::Sphere : LightKind::Rectangle;
+        area.light.kind = kind == "sphere" ? LightKind::Sphere : LightKind::Rectangle;
         area.light.name = found->value("name", "");
         const std::vector<float> colour = found->value("colour", std::vector<float>{1, 1, 1});
         area.light.colour = {colour[0], colour[1], colour[2]};
@@ -176,10 +187,9 @@ std::vector<AreaLight> readAreaLights(const GltfContext& context, const std::vec
     return lights;
 }
 
-// The name of an element under a node: its own, or the node's where it has none or serves several nodes.
-std::string nameUnder(const Node& node, const std::string& own, bool shared, const char* kind, size_t index) {
-    if (!own.empty() && !(shared && !node.name.empty())) return own;
-    return node.name.empty() ? fmt::format("{} {}", kind, index) : node.name;
+// The name of an element under a node: its own, or the node's where it has none or shares it with others.
+std::string nameUnder(const Node& node, const std::string& own, bool shared) {
+    return node.name.empty() || (!own.empty() && !shared) ? own : node.name;
 }
 
 // Cameras and lights become one for each node that uses them, in the order of the file's list. Only nodes of
@@ -197,13 +207,15 @@ void readCamerasAndLights(GltfContext& context) {
         if (const int light = punctualLight(source); light >= 0)
             lightUsers[static_cast<size_t>(light)].push_back(index);
     }
+    std::map<std::string, size_t> named; // how many nodes have a camera of this name
+    for (size_t i = 0; i < cameraUsers.size(); ++i)
+        named[context.model.cameras[i].name] += cameraUsers[i].size();
     for (size_t i = 0; i < cameraUsers.size(); ++i) {
         const Camera read = readCamera(context, i);
         for (const int user : cameraUsers[i]) {
             Node& node = scene.nodes[static_cast<size_t>(user)];
             Camera camera = read;
-            camera.name =
-                nameUnder(node, camera.name, cameraUsers[i].size() > 1, "camera", scene.cameras.size());
+            camera.name = nameUnder(node, camera.name, named[camera.name] > 1);
             camera.node = user;
             scene.cameras.push_back(std::move(camera));
         }

@@ -1,9 +1,13 @@
 #include "scene/gltf_schema.h"
 #include "scene/gltf_shapes.h"
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <optional>
+#include <set>
+#include <string_view>
 
 namespace kestrel {
 namespace {
@@ -37,6 +41,10 @@ public:
 private:
     [[noreturn]] void fail(const std::string& path, const std::string& message) const {
         failGltf(file_, path + " " + message);
+    }
+
+    void warn(const std::string& path, const std::string& message) {
+        file_.warnings.add(path + " " + message);
     }
 
     void checkArray(json& value, const GltfField& field, const std::string& path) {
@@ -80,17 +88,58 @@ private:
                                fmt::join(field.choices, ", ")));
     }
 
-    void checkNumber(json& value, const GltfField& field, const std::string& path) const {
+    void checkNumber(json& value, const GltfField& field, const std::string& path) {
         if (!value.is_number()) fail(path, "is not a number");
         const double number = value.get<double>();
         if (field.kind == GltfKind::Integer) makeInteger(value, path);
         // Integers above 2^31 would be cut off where only a number is meant.
         else if (value.is_number_integer())
             value = number;
-        if (!(number >= field.min && number <= field.max))
-            fail(path, field.max < 1e15
-                           ? fmt::format("is {}, not within {} to {}", number, field.min, field.max)
-                           : fmt::format("is {}, which is out of range", number));
+        if (number >= field.min && number <= field.max) return;
+        const bool counts = field.kind == GltfKind::Integer;
+        if (!counts && (isRounding(number, field) || isInUnusedMaterial(path))) {
+            const double nearest = std::clamp(number, field.min, field.max);
+            warn(path, fmt::format("is {}, which is out of range, and is read as {}", number, nearest));
+            value = nearest;
+            return;
+        }
+        fail(path, field.max < 1e15 ? fmt::format("is {}, not within {} to {}", number, field.min, field.max)
+                                    : fmt::format("is {}, which is out of range", number));
+    }
+
+    // Exporters compute with floats and write 1.0000001 or, through colour spaces, 1.0002 where 1 is meant.
+    static bool isRounding(double number, const GltfField& field) {
+        const double bound = number < field.min ? field.min : field.max;
+        return std::abs(number - bound) <= gltfRounding * std::max(1.0, std::abs(bound));
+    }
+
+    // Whether the path lies in a material that no primitive names.
+    [[nodiscard]] bool isInUnusedMaterial(const std::string& path) {
+        constexpr std::string_view start = "materials[";
+        if (!path.starts_with(start)) return false;
+        if (!usedMaterials_) usedMaterials_ = materialsInUse();
+        size_t index = 0;
+        const char* first = path.data() + start.size();
+        return std::from_chars(first, path.data() + path.size(), index).ec == std::errc() &&
+               !usedMaterials_->contains(index);
+    }
+
+    // Of a document that may be wrong anywhere.
+    [[nodiscard]] std::set<size_t> materialsInUse() const {
+        std::set<size_t> used;
+        const auto note = [&](const json& primitive) {
+            const auto material = primitive.is_object() ? primitive.find("material") : primitive.end();
+            if (primitive.is_object() && material != primitive.end() && material->is_number())
+                used.insert(static_cast<size_t>(std::clamp(material->get<double>(), 0.0, 9e15)));
+        };
+        const auto meshes = file_.document.find("meshes");
+        if (meshes == file_.document.end()) return used;
+        for (const json& mesh : *meshes) {
+            const auto primitives = mesh.is_object() ? mesh.find("primitives") : mesh.end();
+            if (!mesh.is_object() || primitives == mesh.end()) continue;
+            for (const json& primitive : *primitives) note(primitive);
+        }
+        return used;
     }
 
     void makeInteger(json& value, const std::string& path) const {
@@ -104,8 +153,13 @@ private:
     void checkIndex(json& value, const GltfField& field, const std::string& path) const {
         if (!value.is_number()) fail(path, "is not a number");
         makeInteger(value, path);
-        const size_t count = sizeOf(field.target);
         const double number = value.get<double>();
+        if (field.target.empty()) { // a number that another file format gives out
+            if (!(number >= 0 && number <= maxId))
+                fail(path, fmt::format("is {}, which is out of range", number));
+            return;
+        }
+        const size_t count = sizeOf(field.target);
         if (!(number >= 0 && number < static_cast<double>(count)))
             fail(path, fmt::format("is {}, but there are {} {}", number, count,
                                    field.target.substr(field.target.rfind('.') + 1)));
@@ -125,7 +179,10 @@ private:
         return value->is_array() ? value->size() : 0;
     }
 
+    static constexpr double maxId = 4294967295.0;
+
     GltfFile& file_;
+    std::optional<std::set<size_t>> usedMaterials_;
 };
 
 // Members that the value of another one makes necessary.
@@ -150,6 +207,10 @@ void checkVersion(const GltfFile& file) {
     const std::string& version = (*asset)["version"].get_ref<const std::string&>();
     if (!version.starts_with("2."))
         failGltf(file, fmt::format("is glTF {}; version 2 is read", version.substr(0, 20)));
+    const auto least = asset->find("minVersion");
+    if (least != asset->end() && least->is_string() && *least != "2.0")
+        failGltf(file, fmt::format("needs a reader of glTF {}; version 2.0 is read",
+                                   least->get_ref<const std::string&>().substr(0, 20)));
 }
 
 } // namespace

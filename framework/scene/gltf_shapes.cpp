@@ -44,20 +44,34 @@ constexpr double maxUnit = 1;
 // Shapes below name the members that the importer reads, inner objects first.
 
 const GltfShape& bufferShape() {
-    static const GltfShape shape{integer("byteLength", 1).required(), string("uri")};
+    static const GltfShape fallback{boolean("fallback")};
+    static const GltfShape extensions{object("EXT_meshopt_compression", fallback),
+                                      object("KHR_meshopt_compression", fallback)};
+    static const GltfShape shape{integer("byteLength", 1).required(), string("uri"),
+                                 object("extensions", extensions)};
     return shape;
 }
 
 const GltfShape& bufferViewShape() {
+    static const GltfShape compression{index("buffer", "buffers").required(),
+                                       integer("byteOffset"),
+                                       integer("byteLength", 1).required(),
+                                       integer("byteStride", 2, 256).required(),
+                                       integer("count", 1).required(),
+                                       string("mode").required(),
+                                       string("filter")};
+    static const GltfShape extensions{object("EXT_meshopt_compression", compression),
+                                      object("KHR_meshopt_compression", compression)};
     static const GltfShape shape{index("buffer", "buffers").required(), integer("byteOffset"),
-                                 integer("byteLength", 1).required(), integer("byteStride", 4, 252)};
+                                 integer("byteLength", 1).required(), integer("byteStride", 4, 252),
+                                 object("extensions", extensions)};
     return shape;
 }
 
 const GltfShape& accessorShape() {
     static const GltfShape sparseIndices{index("bufferView", "bufferViews").required(),
                                          integer("byteOffset", 0, maxInt),
-                                         integer("componentType", 5121, 5125).required()};
+                                         integer("componentType", 0, maxInt).required()};
     static const GltfShape sparseValues{index("bufferView", "bufferViews").required(),
                                         integer("byteOffset", 0, maxInt)};
     static const GltfShape sparse{integer("count", 1, maxInt).required(),
@@ -75,9 +89,14 @@ const GltfShape& accessorShape() {
 }
 
 const GltfShape& meshShape() {
+    static const GltfShape draco{index("bufferView", "bufferViews").required(),
+                                 field("attributes", GltfKind::IndexMap).required()};
+    static const GltfShape extensions{object("KHR_draco_mesh_compression", draco)};
     static const GltfShape primitive{index("attributes", "accessors", GltfKind::IndexMap).required(),
-                                     index("indices", "accessors"), index("material", "materials"),
-                                     integer("mode", 0, 6),
+                                     index("indices", "accessors"),
+                                     index("material", "materials"),
+                                     integer("mode", 0, maxInt),
+                                     object("extensions", extensions),
                                      index("targets", "accessors", GltfKind::IndexMap).array()};
     static const GltfShape shape{string("name"), object("primitives", primitive).array().required(),
                                  number("weights").array()};
@@ -85,7 +104,7 @@ const GltfShape& meshShape() {
 }
 
 const GltfShape& nodeShape() {
-    static const GltfShape areaLight{string("kind", {"rectangle", "sphere"}).required(),
+    static const GltfShape areaLight{string("kind").required(),
                                      string("name"),
                                      number("colour", 0).array(3),
                                      number("intensity", 0),
@@ -93,7 +112,9 @@ const GltfShape& nodeShape() {
                                      integer("index", 0, maxInt)};
     static const GltfShape extras{object("KESTREL_area_light", areaLight)};
     static const GltfShape lightReference{index("light", "extensions.KHR_lights_punctual.lights").required()};
-    static const GltfShape extensions{object("KHR_lights_punctual", lightReference)};
+    static const GltfShape instancing{index("attributes", "accessors", GltfKind::IndexMap).required()};
+    static const GltfShape extensions{object("KHR_lights_punctual", lightReference),
+                                      object("EXT_mesh_gpu_instancing", instancing)};
     static const GltfShape shape{string("name"),
                                  index("children", "nodes").array(),
                                  number("matrix").array(16),
@@ -127,9 +148,14 @@ const GltfShape& materialShape() {
     static const GltfShape transmission{number("transmissionFactor", 0, maxUnit)};
     static const GltfShape ior{number("ior", 0)};
     static const GltfShape unlit{};
+    static const GltfShape specular{
+        number("diffuseFactor", 0, maxUnit).array(4), number("specularFactor", 0, maxUnit).array(3),
+        number("glossinessFactor", 0, maxUnit), object("diffuseTexture", textureInfoShape()),
+        object("specularGlossinessTexture", textureInfoShape())};
     static const GltfShape extensions{object("KHR_materials_emissive_strength", strength),
                                       object("KHR_materials_transmission", transmission),
-                                      object("KHR_materials_ior", ior), object("KHR_materials_unlit", unlit)};
+                                      object("KHR_materials_ior", ior), object("KHR_materials_unlit", unlit),
+                                      object("KHR_materials_pbrSpecularGlossiness", specular)};
     static const GltfShape shape{string("name"),
                                  object("pbrMetallicRoughness", metallicRoughness),
                                  object("normalTexture", textureInfoShape()),
@@ -148,8 +174,7 @@ const GltfShape& animationShape() {
     static const GltfShape channel{integer("sampler", 0, maxInt).required(),
                                    object("target", target).required()};
     static const GltfShape sampler{index("input", "accessors").required(),
-                                   index("output", "accessors").required(),
-                                   string("interpolation", {"LINEAR", "STEP", "CUBICSPLINE"})};
+                                   index("output", "accessors").required(), string("interpolation")};
     static const GltfShape shape{string("name"), object("channels", channel).array().required(),
                                  object("samplers", sampler).array().required()};
     return shape;
@@ -188,7 +213,10 @@ const GltfShape& gltfDocumentShape() {
                                  string("mimeType")};
     static const GltfShape sampler{integer("magFilter", 0, maxInt), integer("wrapS", 0, maxInt),
                                    integer("wrapT", 0, maxInt)};
-    static const GltfShape texture{index("sampler", "samplers"), index("source", "images")};
+    static const GltfShape webp{index("source", "images")};
+    static const GltfShape textureExtensions{object("EXT_texture_webp", webp)};
+    static const GltfShape texture{index("sampler", "samplers"), index("source", "images"),
+                                   object("extensions", textureExtensions)};
     static const GltfShape skin{string("name"), index("joints", "nodes").array().required(),
                                 index("inverseBindMatrices", "accessors")};
     static const GltfShape shape{string("extensionsUsed").array(),

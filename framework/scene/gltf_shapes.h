@@ -20,7 +20,7 @@ struct GltfField {
     bool isArray = false;
     size_t length = 0; // of the array; 0: any
     double min = -std::numeric_limits<float>::max(), max = std::numeric_limits<float>::max();
-    std::string target;               // Index: the array at the top level that it refers to
+    std::string target; // Index: the array at the top level that it refers to; empty: any number of 32 bits
     std::vector<std::string> choices; // String: the values that are allowed; empty: any
     const GltfShape* shape = nullptr; // Object
 

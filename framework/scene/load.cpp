@@ -19,7 +19,7 @@ namespace {
 
 } // namespace
 
-Scene loadScene(const std::string& source, const std::filesystem::path& folder) {
+Scene loadScene(const std::string& source, const std::filesystem::path& folder, const SceneOptions& options) {
     Scene scene;
     if (isBuiltin(source)) {
         scene = builtinScene(source);
@@ -29,7 +29,7 @@ Scene loadScene(const std::string& source, const std::filesystem::path& folder) 
         std::transform(ending.begin(), ending.end(), ending.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if (ending != ".gltf" && ending != ".glb") failUnknown(source);
-        scene = importGltf(path);
+        scene = importGltf(path, options);
     }
     scene.source = source;
     finishScene(scene);

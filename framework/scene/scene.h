@@ -142,13 +142,21 @@ struct Scene {
 
 // Completes a scene after loading or building: drops vertices that no triangle uses, makes flat normals where
 // a primitive has none and tangents where a normal map needs them, `origin` from the bounds over the
-// timeline, and a camera that frames the scene
-// ("default") where there is none. Idempotent; call it again after a change of rootTransform. Throws
+// timeline, names that tell the cameras apart, and a camera that frames the scene ("default") where there is
+// none. Idempotent; call it again after a change of rootTransform. Throws
 // InputError where the transforms take a vertex out of the range of float.
 void finishScene(Scene& scene);
 
+// How a scene is loaded.
+struct SceneOptions {
+    // A scene file may come from a stranger: the buffers and images that it names are read inside its folder
+    // only, unless this is set.
+    bool allowOutside = false;
+};
+
 // Loads "builtin:NAME", "builtin:NAME?detail=0.1" or a .gltf/.glb file. A relative file name is relative to
 // `folder`. Throws InputError (one line: unknown name with the near one; every way a file can be bad).
-Scene loadScene(const std::string& source, const std::filesystem::path& folder = {});
+Scene loadScene(const std::string& source, const std::filesystem::path& folder = {},
+                const SceneOptions& options = {});
 
 } // namespace kestrel

@@ -1,6 +1,5 @@
 // Cameras and lights at one time.
 #include "core/check.h"
-#include "core/error.h"
 #include "scene/animation.h"
 #include "scene/geometry.h"
 #include <cmath>
@@ -124,16 +123,6 @@ std::vector<LightState> lightsAt(const Scene& scene, double time) {
         states.push_back(state);
     }
     return states;
-}
-
-int cameraIndex(const Scene& scene, const std::string& name) {
-    std::vector<std::string> names;
-    for (size_t i = 0; i < scene.cameras.size(); ++i) {
-        if (name.empty() || scene.cameras[i].name == name) return static_cast<int>(i);
-        names.push_back(scene.cameras[i].name);
-    }
-    throw InputError(Location{scene.source},
-                     fmt::format("the scene has no camera '{}'{}", name, didYouMean(name, names)));
 }
 
 } // namespace kestrel

@@ -16,7 +16,7 @@ public:
 
 private:
     [[nodiscard]] View view() const {
-        return {.camera = 0, .divisor = divisor, .guard = guard, .jitter = jitter};
+        return {.source = {}, .divisor = divisor, .guard = guard, .jitter = jitter};
     }
 };
 

@@ -8,6 +8,8 @@ namespace {
 const std::vector<Use> shadowedLights = {{.port = "maps", .access = Access::Uniform},
                                          {.port = "shadow_maps", .access = Access::Fetch}};
 
+const int texelBytes = formatInfo(Format::D32F).bytes;
+
 void noteLeftOutKinds(const SceneFacts& facts, std::vector<LeftOut>& leftOut) {
     const std::pair<std::uint32_t, const char*> kinds[] = {{facts.pointLights, "point lights"},
                                                            {facts.spotLights, "spot lights"},
@@ -68,8 +70,7 @@ Declaration DirectLight::declare(const World& world, const Inputs& inputs, const
     const LightMapLayout maps = layout(world.facts);
     const bool dark = maps.lights() == 0;
     if (!dark) {
-        if (const auto mistake = lightMapMistake(maps, resolution, formatInfo(Format::D32F).bytes))
-            declaration.problems.push_back({"", *mistake});
+        declaration.leftOut = lightMapShortage(maps, resolution, texelBytes);
         declaration.outputs.push_back({.port = "maps", .desc = Desc::buffer(maps.blockBytes())});
         declaration.steps.push_back({.name = "views",
                                      .run = &DirectLight::uploadViews,
@@ -78,7 +79,8 @@ Declaration DirectLight::declare(const World& world, const Inputs& inputs, const
     }
     // Without shadows the array is one lit texel.
     const bool mapped = !dark && maps.mapped;
-    const auto side = static_cast<std::uint32_t>(mapped ? resolution : 1);
+    const auto side =
+        static_cast<std::uint32_t>(mapped ? lightMapResolution(maps, resolution, texelBytes) : 1);
     Output shadowMaps{.port = "shadow_maps",
                       .desc =
                           Desc::array2D(Format::D32F, {side, side, std::max(1u, mapped ? maps.layers : 1u)})};
@@ -179,9 +181,12 @@ void DirectLight::declareModule(const World& world, const LightMapLayout& maps,
         declaration.leftOut.push_back({"emission", "no material emits light"});
 }
 
-void DirectLight::uploadViews(Commands& commands) const {
-    commands.upload("maps", lightMapBlock(layout(commands.facts()), commands.lights(),
-                                          commands.facts().sphere, resolution, bias, {}, commands.frame()));
+void DirectLight::uploadViews(Commands& commands) {
+    const LightMapLayout maps = layout(commands.facts());
+    warnOfShortage(lightMapShortage(maps, resolution, texelBytes), told_);
+    commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts().sphere,
+                                          lightMapResolution(maps, resolution, texelBytes), bias, {},
+                                          commands.frame()));
 }
 
 } // namespace kestrel

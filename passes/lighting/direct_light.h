@@ -24,12 +24,13 @@ public:
     bool areaLights = true;
 
 private:
-    void uploadViews(Commands& commands) const;
+    void uploadViews(Commands& commands);
     [[nodiscard]] LightMapLayout layout(const SceneFacts& facts) const;
     [[nodiscard]] Defines lightDefines(const LightMapLayout& maps) const;
     void declareShading(const World& world, const Inputs& inputs, const Demand& demand,
                         const LightMapLayout& maps, Declaration& declaration) const;
     void declareModule(const World& world, const LightMapLayout& maps, Declaration& declaration) const;
+    std::string told_; // of what cannot be as asked for
 };
 
 } // namespace kestrel

@@ -39,17 +39,14 @@ Image resampledPicture(const Image& picture) {
     return result;
 }
 
-// A picture's path (without the layer's name) is relative to the scene's folder, or to the working folder of
-// a built-in scene, and does not leave it: graphs may come from strangers.
+// A picture's path is relative to the scene's folder, or to the working folder of a built-in scene.
 Image readSurroundings(const std::string& file, const Scene& scene) {
     if (file.empty()) throw InputError("Environment: its kind is picture, but no file is named");
     const std::filesystem::path source(scene.source);
     const bool builtin = scene.source.empty() || scene.source.starts_with("builtin:");
     const std::filesystem::path folder =
         builtin || source.parent_path().empty() ? std::filesystem::path(".") : source.parent_path();
-    const std::string layer = imageName(folder / file).layer;
-    const std::string name = layer.empty() ? file : file.substr(0, file.size() - layer.size() - 1);
-    const Picture picture = readPicture(ImageName{pathInside(folder, name), layer});
+    const Picture picture = readPicture(imageName(folder / file));
     if (picture.image.channels < 3 && picture.image.channels != 1)
         throw InputError(fmt::format("'{}' is no picture of the surroundings: it has {} channels", file,
                                      picture.image.channels));

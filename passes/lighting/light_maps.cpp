@@ -1,5 +1,6 @@
 #include "light_maps.h"
 #include "core/check.h"
+#include "core/log.h"
 #include "draw/material_defines.h"
 #include "shared/random.h"
 #include <algorithm>
@@ -57,36 +58,72 @@ LightRecord recordOf(const LightState& light) {
     return record;
 }
 
-// Tangent of half a face's angle, without the guard.
-float halfWidthOf(const LightState& light) {
-    if (light.kind != LightKind::Spot) return 1;
-    constexpr float widest = 1.3962634f; // 80 degrees: a flat map has no use for more
-    return std::tan(std::clamp(light.outerCone, 1e-3f, widest));
-}
-
 LightMap mapOf(const LightState& light, const Sphere& scene, int resolution) {
-    const float radius = scene.radius > 0 ? scene.radius : 1;
+    const LightFaces faces = lightFacesOver(light, scene);
     const float guarded =
         static_cast<float>(resolution) / (static_cast<float>(resolution) - 2 * lightMapGuard);
     LightMap map{};
     map.axisX = light.tangent;
     map.axisY = light.bitangent;
     map.axisZ = light.direction;
-    map.origin = light.position;
-    map.faces = lightMapFaces(light.kind);
-    if (light.kind == LightKind::Directional) {
-        // The slab of the scene's bounding sphere, a little wider than rounding.
-        const float wide = 1.001f * radius;
-        map.origin = scene.centre - wide * light.direction;
-        map.halfWidth = wide * guarded;
-        map.inverseRange = 1 / (2 * wide);
-        return map;
-    }
-    // Depth is one over the distance, in float: a near plane costs no precision far away.
-    map.nearPlane = 1e-4f * radius;
-    if (light.kind == LightKind::Sphere) map.nearPlane = std::max(map.nearPlane, light.halfSize.x);
-    map.halfWidth = halfWidthOf(light) * guarded;
+    map.origin = faces.origin;
+    map.faces = lightFaces(light);
+    map.nearPlane = faces.nearPlane;
+    map.halfWidth = faces.halfWidth * guarded;
+    if (map.faces == 0) map.inverseRange = 1 / faces.farPlane;
     return map;
+}
+
+// How strongly a light shines on the scene as a whole, to choose between lights of one kind.
+float strengthOf(const LightState& light, const Sphere& scene) {
+    float strength = std::max({light.intensity.x, light.intensity.y, light.intensity.z});
+    if (light.kind == LightKind::Rectangle) strength *= 4 * light.halfSize.x * light.halfSize.y;
+    if (light.kind == LightKind::Sphere) strength *= light.halfSize.x * light.halfSize.x;
+    if (light.kind == LightKind::Directional) return strength;
+    // As far as the middle of the scene, or as wide as it is where the light stands within.
+    const float distance = std::max(glm::length(light.position - scene.centre), scene.radius);
+    return distance > 0 ? strength / distance / distance : strength;
+}
+
+// The lights of a kind that have a place, in their order: the strongest where they are too many.
+std::vector<size_t> chosenLights(LightKind kind, std::uint32_t count, const std::vector<LightState>& lights,
+                                 const Sphere& scene) {
+    std::vector<size_t> chosen;
+    for (size_t i = 0; i < lights.size(); ++i)
+        if (lights[i].kind == kind) chosen.push_back(i);
+    if (chosen.size() <= count) return chosen;
+    std::stable_sort(chosen.begin(), chosen.end(), [&](size_t a, size_t b) {
+        return strengthOf(lights[a], scene) > strengthOf(lights[b], scene);
+    });
+    chosen.resize(count);
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+}
+
+// What lies where: slots in the order of kinds, layers one after another.
+struct PlacedMap {
+    size_t light; // index into the frame's lights
+    std::uint32_t slot, firstLayer, faces;
+};
+std::vector<PlacedMap> placedMaps(const LightMapLayout& layout, const std::vector<LightState>& lights,
+                                  const Sphere& scene) {
+    std::vector<PlacedMap> placed;
+    std::uint32_t layer = 0;
+    for (const LightKind kind : allKinds) {
+        std::uint32_t slot = layout.firstSlot(kind);
+        for (const size_t i : chosenLights(kind, layout.counts[indexOf(kind)], lights, scene)) {
+            placed.push_back({i, slot++, layer, lightFaces(lights[i])});
+            layer += std::max(1u, placed.back().faces);
+        }
+    }
+    KESTREL_CHECK(!layout.mapped || layer <= layout.layers);
+    return placed;
+}
+
+// Fewer of the kinds with most lights, so that all of them together are `most`.
+void fit(std::array<std::uint32_t, 5>& counts, std::uint32_t most) {
+    for (std::uint32_t sum = std::accumulate(counts.begin(), counts.end(), 0u); sum > most; --sum)
+        --*std::max_element(counts.begin(), counts.end());
 }
 
 // Both offsets of one light in one frame, from numbers of its own.
@@ -116,6 +153,7 @@ Defines LightMapLayout::defines() const {
     Defines result;
     for (size_t i = 0; i < names.size(); ++i) result.emplace(names[i], std::to_string(slots[i]));
     result.emplace("LIGHTS", std::to_string(allSlots()));
+    if (wideSpots) result.emplace("WIDE_SPOTS", "1");
     return result;
 }
 
@@ -123,46 +161,60 @@ std::uint64_t LightMapLayout::blockBytes() const {
     return sizeof(LightMapCounts) + std::uint64_t{allSlots()} * (sizeof(LightMap) + sizeof(LightRecord));
 }
 
-std::uint32_t lightMapFaces(LightKind kind) {
-    switch (kind) {
-    case LightKind::Directional:
-        return 0;
-    case LightKind::Spot:
-        return 1;
-    case LightKind::Rectangle:
-        return 5;
-    case LightKind::Point:
-    case LightKind::Sphere:
-        break;
-    }
-    return 6;
-}
-
 LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, bool mapped) {
     LightMapLayout layout;
     layout.mapped = mapped;
-    for (const LightKind kind : allKinds) {
-        if (!kinds[indexOf(kind)]) continue;
-        const std::uint32_t count = countOf(facts, kind);
-        layout.counts[indexOf(kind)] = count;
-        layout.slots[indexOf(kind)] = count > 0 ? std::bit_ceil(count) : 0;
-        if (mapped) layout.layers += count * std::max(1u, lightMapFaces(kind));
-    }
+    for (const LightKind kind : allKinds)
+        if (kinds[indexOf(kind)]) layout.counts[indexOf(kind)] = countOf(facts, kind);
+    const std::uint32_t all = layout.lights();
+    fit(layout.counts, maxLights);
+    layout.leftOut = all - layout.lights();
+    // Powers of two where there is room: fewer programs.
+    for (size_t i = 0; i < layout.counts.size(); ++i)
+        layout.slots[i] = layout.counts[i] > 0 ? std::bit_ceil(layout.counts[i]) : 0;
+    if (layout.allSlots() > maxLights) layout.slots = layout.counts;
+    if (!mapped) return layout;
+
+    constexpr std::array<std::uint32_t, 5> faces = {6, 1, 1, 5, 6}; // of most lights of a kind
+    for (size_t i = 0; i < faces.size(); ++i) layout.layers += layout.counts[i] * faces[i];
+    // Which of the spot lights are chosen is known only in the frame.
+    const std::uint32_t wide = std::min(facts.wideSpotLights, layout.counts[indexOf(LightKind::Spot)]);
+    layout.wideSpots = wide > 0;
+    layout.layers += 4 * wide;
     return layout;
 }
 
-std::optional<std::string> lightMapMistake(const LightMapLayout& layout, int resolution, int bytes) {
-    if (layout.allSlots() > maxLightSlots)
-        return fmt::format("the scene has {} lights, which take {} slots (powers of two for each kind); the "
-                           "limit is {}",
-                           layout.lights(), layout.allSlots(), maxLightSlots);
+int lightMapResolution(const LightMapLayout& layout, int resolution, int bytes) {
+    const auto most = static_cast<double>(maxLightMapBytes) / std::max(1u, layout.layers) / bytes;
+    const int fitting = static_cast<int>(std::sqrt(most)) / 16 * 16;
+    return std::clamp(fitting, 16, resolution);
+}
+
+std::vector<LeftOut> lightMapShortage(const LightMapLayout& layout, int resolution, int bytes) {
+    std::vector<LeftOut> shortage;
+    if (layout.leftOut > 0)
+        shortage.push_back(
+            {"weak lights",
+             fmt::format("the scene has {} lights; the limit is {}: the {} weakest do not shine",
+                         layout.lights() + layout.leftOut, maxLights, layout.leftOut)});
+    const int made = lightMapResolution(layout, resolution, bytes);
     const auto side = static_cast<std::uint64_t>(resolution);
-    const std::uint64_t need = side * side * static_cast<std::uint64_t>(bytes) * layout.layers;
-    if (need > maxLightMapBytes)
-        return fmt::format("{} maps of {} x {} texels need {}; the limit is {}: lower the resolution",
-                           layout.layers, resolution, resolution, bytesText(need),
-                           bytesText(maxLightMapBytes));
-    return {};
+    if (made < resolution)
+        shortage.push_back(
+            {"map resolution",
+             fmt::format("{} maps of {} x {} texels need {}; the limit is {}: they are made of {} x {}",
+                         layout.layers, resolution, resolution,
+                         bytesText(side * side * static_cast<std::uint64_t>(bytes) * layout.layers),
+                         bytesText(maxLightMapBytes), made, made)});
+    return shortage;
+}
+
+void warnOfShortage(const std::vector<LeftOut>& shortage, std::string& told) {
+    std::string text;
+    for (const LeftOut& item : shortage) text += item.why + "\n";
+    if (text == told) return;
+    told = text;
+    for (const LeftOut& item : shortage) logWarning("{}", item.why);
 }
 
 std::vector<std::byte> lightMapBlock(const LightMapLayout& layout, const std::vector<LightState>& lights,
@@ -172,21 +224,12 @@ std::vector<std::byte> lightMapBlock(const LightMapLayout& layout, const std::ve
         layout.counts[0], layout.counts[1], layout.counts[2], layout.counts[3], layout.counts[4], bias, 0, 0};
     std::vector<LightMap> maps(layout.allSlots());
     std::vector<LightRecord> records(layout.allSlots());
-    std::uint32_t layer = 0;
-    for (const LightKind kind : allKinds) {
-        if (layout.counts[indexOf(kind)] == 0) continue;
-        std::uint32_t slot = layout.firstSlot(kind);
-        for (size_t i = 0; i < lights.size(); ++i) {
-            if (lights[i].kind != kind) continue;
-            KESTREL_CHECK_LT(slot, layout.firstSlot(kind) + layout.counts[indexOf(kind)]);
-            LightMap map = mapOf(lights[i], scene, resolution);
-            displace(map, static_cast<std::uint32_t>(i), jitter, scene.radius, resolution, frame);
-            map.firstLayer = layer;
-            layer += std::max(1u, map.faces);
-            maps[slot] = map;
-            records[slot] = recordOf(lights[i]);
-            ++slot;
-        }
+    for (const PlacedMap& placed : placedMaps(layout, lights, scene)) {
+        LightMap map = mapOf(lights[placed.light], scene, resolution);
+        displace(map, static_cast<std::uint32_t>(placed.light), jitter, scene.radius, resolution, frame);
+        map.firstLayer = placed.firstLayer;
+        maps[placed.slot] = map;
+        records[placed.slot] = recordOf(lights[placed.light]);
     }
     std::vector<std::byte> block(layout.blockBytes());
     std::byte* at = block.data();
@@ -208,11 +251,6 @@ Step lightMapStep(std::string name, const World& world, const LightMapLayout& la
               .uses = {{.port = "maps", .access = Access::Uniform}},
               .group = "generation"};
     step.defines.merge(materialDefines(world.facts));
-    // Choosing the layer in the vertex shader spares a stage where the driver can.
-    if (world.capabilities.has("GL_ARB_shader_viewport_layer_array"))
-        step.defines.emplace("LAYER_BY_VERTEX", "1");
-    else
-        step.shaders.emplace_back("lighting/light_map.geom");
     return step;
 }
 
@@ -220,16 +258,17 @@ void drawLightMaps(const LightMapLayout& layout, Commands& commands) {
     // Light comes to both sides of every triangle.
     DrawState state;
     state.cull = Cull::None;
-    int layer = 0;
-    for (const LightKind kind : allKinds)
-        for (std::uint32_t i = 0; i < layout.counts[indexOf(kind)]; ++i)
-            for (std::uint32_t face = 0; face < std::max(1u, lightMapFaces(kind)); ++face) {
-                commands.set("map_slot", layout.firstSlot(kind) + i);
-                commands.set("map_face", face);
-                commands.set("map_layer", layer++);
-                commands.drawScene(state, {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided,
-                                           TriangleClass::Masked, TriangleClass::MaskedDoubleSided});
-            }
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> layers; // slot and face
+    for (const PlacedMap& placed : placedMaps(layout, commands.lights(), commands.facts().sphere))
+        for (std::uint32_t face = 0; face < std::max(1u, placed.faces); ++face)
+            layers.emplace_back(placed.slot, face);
+    commands.drawSceneLayers(state,
+                             {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided, TriangleClass::Masked,
+                              TriangleClass::MaskedDoubleSided},
+                             static_cast<std::uint32_t>(layers.size()), [&](std::uint32_t layer) {
+                                 commands.set("map_slot", layers[layer].first);
+                                 commands.set("map_face", layers[layer].second);
+                             });
 }
 
 } // namespace kestrel

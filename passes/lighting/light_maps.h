@@ -1,6 +1,7 @@
 // Which lights get maps, how many layers those take, and the block that drawing and lookup share
 // (shared/light_map.h).
 #pragma once
+#include "draw/light_faces.h"
 #include "execute/commands.h"
 #include "shared/light_map.h"
 #include <array>
@@ -13,33 +14,40 @@ namespace kestrel {
 
 using LightKinds = std::array<bool, 5>; // by LightKind: point, spot, directional, rectangle, sphere
 
-// What a pass maps: lights of these kinds, in this order.
+// What a pass maps: lights of these kinds, in this order; where there are more than maxLights, the strongest
+// of each kind.
 struct LightMapLayout {
     std::array<std::uint32_t, 5> counts{}; // by LightKind
-    std::array<std::uint32_t, 5> slots{};  // counts rounded up to powers of two: what programs are made for
-    std::uint32_t layers = 0;              // of the map arrays
-    bool mapped = true;                    // false: lights without maps
+    std::array<std::uint32_t, 5> slots{};  // what programs are made for: counts, rounded up to powers of two
+                                          // where those fit
+    std::uint32_t layers = 0;  // of the map arrays
+    bool mapped = true;        // false: lights without maps
+    bool wideSpots = false;    // some spot light's map may have several faces
+    std::uint32_t leftOut = 0; // lights for which there is no place
 
     [[nodiscard]] std::uint32_t lights() const;
     [[nodiscard]] std::uint32_t allSlots() const;
     [[nodiscard]] std::uint32_t firstSlot(LightKind kind) const;
     // POINT_LIGHTS, SPOT_LIGHTS, DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, SPHERE_LIGHTS: slots; LIGHTS: all of
-    // them.
+    // them; WIDE_SPOTS where there may be some.
     [[nodiscard]] Defines defines() const;
     [[nodiscard]] std::uint64_t blockBytes() const;
 };
 
-// Faces of a light's map, 0 for parallel rays (which take one layer).
-std::uint32_t lightMapFaces(LightKind kind);
-
 // The scene's lights of `kinds`; `mapped` false: none of them gets a layer.
 LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, bool mapped);
 
-// Why these maps cannot be made: too many lights for a block, or more memory than maxLightMapBytes. `bytes`
-// is what a texel of all arrays takes.
-inline constexpr std::uint32_t maxLightSlots = 64;
+// What a block holds: 192 bytes a light, of the 16 KiB that every device allows.
+inline constexpr std::uint32_t maxLights = 64;
 inline constexpr std::uint64_t maxLightMapBytes = std::uint64_t{1} << 30;
-std::optional<std::string> lightMapMistake(const LightMapLayout& layout, int resolution, int bytes);
+// The resolution at which these maps are made: the one asked for, or what takes no more memory than
+// maxLightMapBytes. `bytes` is what a texel of all arrays takes.
+int lightMapResolution(const LightMapLayout& layout, int resolution, int bytes);
+// What is not as it was asked for, each in one sentence with figure and limit: fewer lights, a lower
+// resolution.
+std::vector<LeftOut> lightMapShortage(const LightMapLayout& layout, int resolution, int bytes);
+// Tells them in the log, once as long as they stay the same: `told` is the pass's memory of it.
+void warnOfShortage(const std::vector<LeftOut>& shortage, std::string& told);
 
 // How the maps of a frame are displaced against aliasing.
 struct LightMapJitter {
@@ -49,7 +57,7 @@ struct LightMapJitter {
 
 // The block: counts, maps, and light records of each slot. Maps cover a scene of that bounding sphere; faces
 // are wider than their share of directions by lightMapGuard texels on each side, so that filters need no
-// neighbour. Spot lights wider than 80 degrees to each side are mapped up to there.
+// neighbour.
 inline constexpr float lightMapGuard = 3;
 std::vector<std::byte> lightMapBlock(const LightMapLayout& layout, const std::vector<LightState>& lights,
                                      const Sphere& scene, int resolution, float bias,

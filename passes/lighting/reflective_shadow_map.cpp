@@ -62,15 +62,20 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
                   .shader = "lighting/reflective_shadow_map.glsl",
                   .defines = dark ? Defines{{"LIGHTS", "0"}} : maps.defines()};
 
-    // Without a light the arrays are one black texel.
-    const auto side = static_cast<std::uint32_t>(dark ? 1 : resolution);
-    const Extent extent{side, side, std::max(1u, dark ? 1u : maps.layers)};
     const bool traced = demand.reads("radiance");
-    Step draw = lightMapStep("draw", world, maps);
+    const auto wanted = [&](const MapTarget& target) {
+        return (traced && target.lookedUp) || demand.reads(target.port);
+    };
     int bytes = formatInfo(Format::D32F).bytes;
+    for (const MapTarget& target : mapTargets)
+        if (wanted(target)) bytes += formatInfo(target.format).bytes;
+    const int made = lightMapResolution(maps, resolution, bytes);
+    // Without a light the arrays are one black texel.
+    const auto side = static_cast<std::uint32_t>(dark ? 1 : made);
+    const Extent extent{side, side, std::max(1u, dark ? 1u : maps.layers)};
+    Step draw = lightMapStep("draw", world, maps);
     for (const MapTarget& target : mapTargets) {
-        const bool looked = traced && target.lookedUp;
-        if (!looked && !demand.reads(target.port)) continue;
+        if (!wanted(target)) continue;
         Output output{.port = target.port, .desc = Desc::array2D(target.format, extent)};
         if (dark)
             output.constant = glm::vec4(0);
@@ -79,8 +84,7 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
         declaration.outputs.push_back(std::move(output));
         draw.defines.emplace(target.define, "1");
         draw.uses.push_back({.port = target.port, .access = Access::Attachment, .write = true});
-        if (looked) module.uses.push_back({.port = target.port, .access = Access::Fetch});
-        bytes += formatInfo(target.format).bytes;
+        if (traced && target.lookedUp) module.uses.push_back({.port = target.port, .access = Access::Fetch});
     }
     Output depth{.port = "map_depth", .desc = Desc::array2D(Format::D32F, extent)};
     Output block{.port = "maps", .desc = Desc::buffer(std::max<std::uint64_t>(maps.blockBytes(), 16))};
@@ -95,17 +99,16 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
                                                    : "the scene has no light that is mapped"});
         return declaration;
     }
-    if (const auto mistake = lightMapMistake(maps, resolution, bytes))
-        declaration.problems.push_back({"", *mistake});
+    declaration.leftOut = lightMapShortage(maps, resolution, bytes);
     depth.clear = glm::vec4(0);
     declaration.outputs.push_back(std::move(depth));
     declaration.outputs.push_back(std::move(block));
     module.uses.push_back({.port = "maps", .access = Access::Uniform});
-    module.defines.emplace("RESOLUTION", std::to_string(resolution));
+    module.defines.emplace("RESOLUTION", std::to_string(made));
     draw.uses.push_back({.port = "map_depth", .access = Access::Attachment, .write = true});
     declaration.modules.push_back(std::move(module));
     declaration.steps = {{.name = "views",
-                          .run = &ReflectiveShadowMap::uploadViews,
+                          .run = {&ReflectiveShadowMap::uploadViews, bytes},
                           .uses = {{.port = "maps", .access = Access::Copy, .write = true}},
                           .group = "generation"},
                          std::move(draw)};
@@ -124,10 +127,12 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
     return declaration;
 }
 
-void ReflectiveShadowMap::uploadViews(Commands& commands) const {
-    commands.upload("maps",
-                    lightMapBlock(layout(commands.facts()), commands.lights(), commands.facts().sphere,
-                                  resolution, bias, {jitter, positionJitter}, commands.frame()));
+void ReflectiveShadowMap::uploadViews(Commands& commands, int bytes) {
+    const LightMapLayout maps = layout(commands.facts());
+    warnOfShortage(lightMapShortage(maps, resolution, bytes), told_);
+    commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts().sphere,
+                                          lightMapResolution(maps, resolution, bytes), bias,
+                                          {jitter, positionJitter}, commands.frame()));
 }
 
 } // namespace kestrel

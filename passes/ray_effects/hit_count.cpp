@@ -15,7 +15,7 @@ PassType HitCount::type() {
 
 Declaration HitCount::declare(const World& world, const Inputs&, const Demand&) const {
     Declaration declaration;
-    const View view{.camera = 0, .divisor = divisor, .guard = 0, .jitter = false};
+    const View view{.source = {}, .divisor = divisor, .guard = 0, .jitter = false};
     declaration.outputs.push_back(
         {.port = "count", .desc = Desc::texture2D(Format::R32F, world.extentOf(view), view)});
     if (world.facts.triangles == 0) {

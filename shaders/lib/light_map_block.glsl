@@ -10,7 +10,6 @@ layout(std140) uniform Maps {
 
 uniform uint map_slot;
 uniform uint map_face;
-uniform int map_layer;
 
 // With SHADOW only depth is drawn.
 #if defined(SHADOW) && !defined(MATERIAL_MASKED)

@@ -1,6 +1,7 @@
 // Materials at a point: the same code for rasterized fragments and for hits of rays. Defines (materialDefines()):
 //   MATERIAL_TEXTURES      some material has a texture; then also
 //     MATERIAL_COLOUR_ARRAYS, MATERIAL_DATA_ARRAYS   how many arrays hold colour (sRGB) and data textures, 0 to 4
+//     MATERIAL_TILED         some layers hold several textures
 //   MATERIAL_MASKED        some material is alpha-tested
 //   MATERIAL_NORMAL_MAPS   some material has a normal map
 //   MATERIAL_COLOURS       some mesh has vertex colours
@@ -65,6 +66,43 @@ void placeTexture(TextureRecord record, TexCoords coords, out vec3 at, out vec2 
               wrapTexCoord(uv.y, (record.flags >> textureWrapShiftT) & 3u, side), float(record.place >> 8u));
 }
 
+#ifdef MATERIAL_TILED
+// Four texels of one mip level of a square within a layer; beyond its border come those of the other side where it
+// repeats, else the outermost once more. `size` is the square's side on that level.
+vec4 tiledLevel(sampler2DArray map, TextureRecord record, vec3 at, int level) {
+    int size = max(int(record.side) >> level, 1);
+    ivec2 corner = ivec2(record.corner & 0xffffu, record.corner >> 16u) >> level;
+    vec2 place = at.xy * float(size) - 0.5;
+    ivec2 first = ivec2(floor(place));
+    vec2 part = place - vec2(first);
+    ivec2 second = first + 1;
+    bvec2 repeats = equal(uvec2(record.flags >> textureWrapShiftS, record.flags >> textureWrapShiftT) & 3u, uvec2(0u));
+    // Sides are powers of two: the bits above are the whole repetitions.
+    first = mix(clamp(first, 0, size - 1), first & (size - 1), repeats);
+    second = mix(clamp(second, 0, size - 1), second & (size - 1), repeats);
+    int layer = int(at.z);
+    vec4 above = mix(texelFetch(map, ivec3(corner + first, layer), level),
+                     texelFetch(map, ivec3(corner + ivec2(second.x, first.y), layer), level), part.x);
+    vec4 below = mix(texelFetch(map, ivec3(corner + ivec2(first.x, second.y), layer), level),
+                     texelFetch(map, ivec3(corner + second, layer), level), part.x);
+    return mix(above, below, part.y);
+}
+
+// As textureGrad of a texture that has the layer for itself: linear in both levels and between them.
+vec4 tiledTexture(sampler2DArray map, TextureRecord record, vec3 at, vec2 dx, vec2 dy) {
+    at.xy -= mix(vec2(0.0), floor(at.xy), equal(uvec2(record.flags >> textureWrapShiftS,
+                                                      record.flags >> textureWrapShiftT) & 3u, uvec2(0u)));
+    float side = float(record.side);
+    float squared = side * side * max(dot(dx, dx), dot(dy, dy));
+    float level = clamp(0.5 * log2(max(squared, 1.0)), 0.0, log2(side));
+    vec4 fine = tiledLevel(map, record, at, int(level));
+    return fract(level) == 0.0 ? fine : mix(fine, tiledLevel(map, record, at, int(level) + 1), fract(level));
+}
+#define readTexture(map) tiledTexture(map, record, at, dx, dy)
+#else
+#define readTexture(map) textureGrad(map, at, dx, dy)
+#endif
+
 // Sampler arrays take only dynamically uniform indices, so each array is asked by name. An absent texture is white.
 vec4 colourTexture(TextureRecord record, TexCoords coords) {
 #if MATERIAL_COLOUR_ARRAYS > 0
@@ -74,15 +112,15 @@ vec4 colourTexture(TextureRecord record, TexCoords coords) {
     if (record.place == noTexture) return vec4(1.0);
     uint array = record.place & 255u;
 #if MATERIAL_COLOUR_ARRAYS > 3
-    if (array == 3u) return textureGrad(scene_colour_textures[3], at, dx, dy);
+    if (array == 3u) return readTexture(scene_colour_textures[3]);
 #endif
 #if MATERIAL_COLOUR_ARRAYS > 2
-    if (array == 2u) return textureGrad(scene_colour_textures[2], at, dx, dy);
+    if (array == 2u) return readTexture(scene_colour_textures[2]);
 #endif
 #if MATERIAL_COLOUR_ARRAYS > 1
-    if (array == 1u) return textureGrad(scene_colour_textures[1], at, dx, dy);
+    if (array == 1u) return readTexture(scene_colour_textures[1]);
 #endif
-    return textureGrad(scene_colour_textures[0], at, dx, dy);
+    return readTexture(scene_colour_textures[0]);
 #else
     return vec4(1.0);
 #endif
@@ -96,15 +134,15 @@ vec4 dataTexture(TextureRecord record, TexCoords coords) {
     if (record.place == noTexture) return vec4(1.0);
     uint array = record.place & 255u;
 #if MATERIAL_DATA_ARRAYS > 3
-    if (array == 3u) return textureGrad(scene_data_textures[3], at, dx, dy);
+    if (array == 3u) return readTexture(scene_data_textures[3]);
 #endif
 #if MATERIAL_DATA_ARRAYS > 2
-    if (array == 2u) return textureGrad(scene_data_textures[2], at, dx, dy);
+    if (array == 2u) return readTexture(scene_data_textures[2]);
 #endif
 #if MATERIAL_DATA_ARRAYS > 1
-    if (array == 1u) return textureGrad(scene_data_textures[1], at, dx, dy);
+    if (array == 1u) return readTexture(scene_data_textures[1]);
 #endif
-    return textureGrad(scene_data_textures[0], at, dx, dy);
+    return readTexture(scene_data_textures[0]);
 #else
     return vec4(1.0);
 #endif

@@ -1,7 +1,4 @@
 // The scene as one face of a light's map sees it.
-#ifdef LAYER_BY_VERTEX
-#extension GL_ARB_shader_viewport_layer_array : require
-#endif
 #include "lib/light_map_block.glsl"
 #include "lib/vertex.glsl"
 
@@ -29,7 +26,4 @@ void main() {
     float w = parallel ? 1.0 : ahead.z;
     float depth = parallel ? 1.0 - ahead.z * map.inverseRange : map.nearPlane;
     gl_Position = vec4(ahead.xy / map.halfWidth + map.jitter * w, depth, w);
-#ifdef LAYER_BY_VERTEX
-    gl_Layer = map_layer;
-#endif
 }

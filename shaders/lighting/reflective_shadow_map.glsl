@@ -46,7 +46,12 @@ vec3 M(surface)(Surface at, vec3 toward) {
     EACH_LIGHT(slot, 0, POINT_LIGHTS, M(counts).points, sum += M(fromMap)(slot, 6u, at, toward);)
 #endif
 #if SPOT_LIGHTS > 0
+#ifdef WIDE_SPOTS
+    EACH_LIGHT(slot, POINT_LIGHTS, SPOT_LIGHTS, M(counts).spots,
+               sum += M(fromMap)(slot, M(maps)[slot].faces, at, toward);)
+#else
     EACH_LIGHT(slot, POINT_LIGHTS, SPOT_LIGHTS, M(counts).spots, sum += M(fromMap)(slot, 1u, at, toward);)
+#endif
 #endif
 #if DIRECTIONAL_LIGHTS > 0
     EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS, DIRECTIONAL_LIGHTS, M(counts).directionals,

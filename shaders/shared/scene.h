@@ -11,8 +11,8 @@ struct TextureRecord {
     uint place;   // array in the low byte, layer above; noTexture: none
     uint flags;   // textureFlag…
     uvec2 source; // size of the image before it was resized to its array, texels
-    uint side;    // of the array, texels
-    uint pad;
+    uint side;    // of the image's square within its layer, texels
+    uint corner;  // of the square: x in the low 16 bits, y above, texels
 };
 
 const uint noTexture = 0xffffffffu;

@@ -2,7 +2,6 @@
 import csv
 import html
 import json
-import os
 import re
 import shutil
 import signal
@@ -10,7 +9,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from kestrel_cli import KESTREL, done, files_in, folder, kestrel, refused, run_tests
+from kestrel_cli import KESTREL, SOURCE, done, files_in, folder, kestrel, need, need_part, refused, run_tests
 
 TINY = {
     "kestrel_sweep": 1,
@@ -36,7 +35,6 @@ TINY = {
     ],
 }
 ROWS = 12
-NO_EMBREE = "embree" not in kestrel("--version").out
 
 
 def tiny(here, **changes):
@@ -61,13 +59,12 @@ def without_times(data):
         if row.get("rays"):
             del row["rays"]["tracing_ns"]
     for machine in data["machines"]:
-        del machine["spin"]
+        del machine["spin"], machine["date"]
     return data
 
 
 def test_measures_everything_it_names():
-    if NO_EMBREE:
-        return
+    need_part("embree")
     with folder() as here:
         out = done("sweep", tiny(here), "--out", f"{here}/out").out
         assert "index.html" in out
@@ -95,27 +92,42 @@ def test_measures_everything_it_names():
         with open(f"{here}/out/results.csv", newline="") as stream:
             table = list(csv.DictReader(stream))
         assert len(table) == ROWS
+        assert all(re.fullmatch("m[0-9a-f]{6}", line["machine"]) for line in table), "a machine is no number"
+        tables = (Path(here) / "out" / "results.md").read_text()
+        assert tables == done("sweep", "--markdown", f"{here}/out/results.json").out
+        assert f"    kestrel sweep {here}/tiny.json --out results\n" in tables and "### tower: rays\n" in tables
+        assert len([line for line in tables.splitlines() if line.startswith("| ")]) == ROWS + 4
+        assert "no results.json" in refused("sweep", "--markdown", here + "/tiny.json")[0]
         assert abs(float(table[0]["flip"]) - data["rows"][0]["flip"]) < 1e-6
 
 
-def test_its_commands_make_its_pictures_again():
-    if NO_EMBREE:
-        return
-    with folder() as here:
-        done("sweep", tiny(here), "--out", f"{here}/out", "--only", "ROMA", folder=here)
+def test_its_commands_make_its_pictures_again_from_anywhere():
+    need_part("embree")
+    with folder() as here, folder() as reader:
+        study = Path(here) / "study"
+        study.mkdir()
+        tiny(study)
+        done("sweep", "tiny.json", "--out", "../out", "--only", "ROMA", folder=study)
         row = results(f"{here}/out")["rows"][2]
-        words = subprocess.run(["bash", "-c", f"printf '%s\\n' {row['command']}"], capture_output=True, text=True,
-                               check=True).stdout.splitlines()
+        with open(f"{here}/out/results.csv", newline="") as stream:
+            assert [line["command"] for line in csv.DictReader(stream)][2] == row["command"]
+        words = words_of(row["command"])
         assert words[:2] == ["kestrel", "render"]
         words = [word.replace(".exr", ".png") for word in words]
-        done(*words[1:], folder=here)
-        again = Path(here) / words[-1].split("=")[-1]
+        done(*words[1:], folder=reader)
+        again = Path(reader) / words[-1].split("=")[-1]
         assert again.read_bytes() == (Path(here) / "out" / row["picture"]).read_bytes()
+        done(*words_of(row["times_command"])[1:], "--list", folder=reader)
+
+
+def words_of(command):
+    """As a shell splits it."""
+    return subprocess.run(["bash", "-c", f"printf '%s\\n' {command}"], capture_output=True, text=True,
+                          check=True).stdout.splitlines()
 
 
 def test_goes_on_after_it_was_killed():
-    if NO_EMBREE:
-        return
+    need_part("embree")
     with folder() as here:
         file = tiny(here)
         done("sweep", file, "--out", f"{here}/whole")
@@ -136,19 +148,77 @@ def test_goes_on_after_it_was_killed():
         assert without_times(results(out)) == without_times(results(f"{here}/whole"))
 
 
-def test_refuses_to_resume_a_changed_sweep():
-    if NO_EMBREE:
-        return
+def test_refuses_to_resume_what_was_measured_otherwise_with_every_cause():
+    need_part("embree")
     with folder() as here:
-        done("sweep", tiny(here), "--out", f"{here}/out", "--only", "BVH")
-        lines = refused("sweep", tiny(here, frames=3), "--out", f"{here}/out", "--resume")
-        assert any("another form of tiny.json" in line for line in lines), lines
-        refused("sweep", tiny(here), "--out", f"{here}/out", "--resume", "--size", "32x32")
+        graph = Path(here) / "own.json"
+        graph.write_text((SOURCE / "graphs" / "ray_ao.json").read_text())
+        variants = [{**TINY["variants"][1], "graph": "own.json"}]
+        done("sweep", tiny(here, variants=variants), "--out", f"{here}/out")
+        graph.write_text(graph.read_text() + "\n")
+        changed = tiny(here, frames=3, seed=5, scenes=["builtin:blob?detail=0.05", {**TINY["scenes"][1], "camera": ""}],
+                       variants=[{**variants[0], "set": ["ao.tracer=bvh.tracer", "ao.rays=2"]}])
+        text = "\n".join(refused("sweep", changed, "--out", f"{here}/out", "--resume", "--size", "32x32"))
+        for cause in ["'size' was '64x36' and is '32x32'", "'frames' was 2 and is 3", "'seed' was 0 and is 5",
+                      "the text of the graph 'own.json' has changed", "'camera' of the scene 'tower' was 'outside' and is ''",
+                      "'set' of the variant 'BVH'", "cannot be kept for tiny.json"]:
+            assert cause in text, cause + ": " + text
+        assert text.count("own.json") == 1, text
+
+
+def test_what_a_sweep_gains_joins_what_is_measured():
+    need_part("embree")
+    with folder() as here:
+        bvh = TINY["variants"][1]
+        done("sweep", tiny(here, variants=[bvh], scenes=TINY["scenes"][:1], repeats=1), "--out", f"{here}/out")
+        kept = {part: part.read_bytes() for part in Path(here).glob("out/parts/*/*/*.json")}
+        assert len(kept) == 2
+        more = {**bvh, "name": "more rays", "axes": {"ao.rays": [1, 2]}}
+        file = tiny(here, variants=[more, bvh], repeats=2, title="Another title")
+        done("sweep", file, "--out", f"{here}/out", "--resume")
+        data = results(f"{here}/out")
+        assert len(data["rows"]) == 6 and data["missing"] == [] and data["title"] == "Another title"
+        assert all(row["repeat_count"] == 2 for row in data["rows"])
+        for part, text in kept.items():
+            assert part.read_bytes() == text, f"{part} was measured twice"
+        done("sweep", tiny(here, variants=[bvh], repeats=2), "--out", f"{here}/out", "--resume")
+        assert len(results(f"{here}/out")["rows"]) == 2, "what the sweep no longer has is kept, and not shown"
+
+
+def test_names_graphs_and_scenes_wherever_they_lie():
+    need_part("embree")
+    with folder() as here, folder() as elsewhere:
+        here, elsewhere = Path(here), Path(elsewhere)
+        for name in ["study", "data", "again"]:
+            (here / name).mkdir()
+        done("scene", "export", "builtin:lattice?detail=0.02", here / "data" / "still.glb")
+        (elsewhere / "far.json").write_text((SOURCE / "graphs" / "ray_ao.json").read_text())
+        (here / "study" / "link.json").symlink_to(elsewhere / "far.json")
+        bvh = {"output": "mean.result", "set": ["ao.tracer=bvh.tracer"]}
+        names = {"absolute": elsewhere / "far.json", "above": "../data/near.json", "link": "link.json", "shipped": "ray_ao.json"}
+        (here / "data" / "near.json").write_text((elsewhere / "far.json").read_text())
+        file = tiny(here / "study", repeats=1, scenes=["../data/still.glb", {"name": "far", "source": str(here / "data/still.glb")}],
+                    variants=[{**bvh, "name": name, "graph": str(graph)} for name, graph in names.items()])
+        done("sweep", file, "--out", here / "out")
+        rows = results(here / "out")["rows"]
+        assert len(rows) == 8 and len({row["mse"] for row in rows}) == 1, "one graph and one scene under several names"
+        # The study moves: what counts is what the files hold.
+        for row in (here / "out" / "parts").glob("*/*/repetition-0.json"):
+            row.unlink()
+        shutil.copytree(here / "data", here / "again" / "data")
+        shutil.copytree(here / "study", here / "again" / "study", symlinks=True)
+        done("sweep", here / "again" / "study" / "tiny.json", "--out", here / "out", "--resume")
+        with open(here / "again" / "data" / "still.glb", "ab") as scene:
+            scene.write(b"    ")
+        text = "\n".join(refused("sweep", here / "again" / "study" / "tiny.json", "--out", here / "out", "--resume"))
+        assert "the scene 'still.glb' has changed" in text and "'far'" not in text, text
+        (here / "again" / "data" / "still.glb").unlink()
+        text = "\n".join(refused("sweep", here / "again" / "study" / "tiny.json", "--out", here / "new"))
+        assert "there is no scene file" in text and not (here / "new").exists(), text
 
 
 def test_one_variant_first_and_the_rest_later():
-    if NO_EMBREE:
-        return
+    need_part("embree")
     with folder() as here:
         file = tiny(here)
         done("sweep", file, "--out", f"{here}/out", "--only", "BVH")
@@ -161,8 +231,7 @@ def test_one_variant_first_and_the_rest_later():
 
 
 def test_shards_join_to_the_whole():
-    if NO_EMBREE:
-        return
+    need_part("embree")
     with folder() as here:
         file = tiny(here)
         done("sweep", file, "--out", f"{here}/whole")
@@ -179,8 +248,7 @@ def test_shards_join_to_the_whole():
 
 
 def test_a_variant_that_fails_is_noted_and_the_others_go_on():
-    if NO_EMBREE:
-        return
+    need_part("embree")
     with folder() as here:
         variants = [TINY["variants"][1], {"name": "other rays", "graph": "sweeps/graphs/rays.json", "hits": "query.hits",
                                           "set": ["rays.distance=0.5"], "plot": "rays"}]
@@ -215,16 +283,18 @@ def test_lists_what_it_would_measure():
         assert files_in(here) == ["tiny.json"]
 
 
-def test_shipped_sweeps_are_whole():
-    folder_ = Path(os.environ["KESTREL_SOURCE"]) / "graphs" / "sweeps"
-    sweeps = [sweep for sweep in sorted(folder_.glob("*.json")) if sweep.stem != "schema"]
-    names = [sweep.stem for sweep in sweeps]
+def test_the_sweeps_of_the_paper_come_with_it():
+    names = [sweep.stem for sweep in (SOURCE / "graphs" / "sweeps").glob("*.json")]
     for name in ["ambient_occlusion", "antialiasing", "denoising", "glossy", "indirect", "large_scene", "refresh",
                  "roma_table2", "snap", "soft_shadow", "subdivision"]:
         assert name in names, name
-    if NO_EMBREE:
-        return
-    for sweep in sweeps:
+
+
+def test_shipped_sweeps_fit_the_shipped_graphs():
+    need_part("embree")
+    for sweep in sorted((SOURCE / "graphs" / "sweeps").glob("*.json")):
+        if sweep.stem == "schema":
+            continue
         assert len(done("sweep", sweep, "--list", "--json").json()) > 3, sweep
 
 
@@ -236,9 +306,8 @@ def browser():
 
 
 def test_the_page_works_in_a_browser():
-    if NO_EMBREE or not browser():
-        print("skipped: there is no chromium" if not browser() else "skipped: no Embree in this build")
-        return
+    need_part("embree")
+    need(browser(), "there is no chromium")
     with folder() as here:
         done("sweep", tiny(here), "--out", f"{here}/out")
         page = subprocess.run(

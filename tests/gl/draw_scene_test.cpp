@@ -388,6 +388,61 @@ TEST_F(TexturedSceneTest, EveryArrayIsReachedAndEveryKindOfTexture) {
     }
 }
 
+// More images than an array has layers: several share a layer, and each shows itself alone, with its own
+// wrapping.
+TEST_F(TexturedSceneTest, ImagesThatShareALayerLookAsIfEachHadOne) {
+    constexpr int count = 2100; // 2048 layers are what a device must have
+    Scene scene;
+    for (int i = 0; i < count; ++i) {
+        const auto level = static_cast<std::uint8_t>(i % 251);
+        scene.images.push_back(imageOf(
+            2, 2, {{level, 0, 0, 255}, {0, level, 0, 255}, {0, 0, level, 255}, {level, level, level, 255}}));
+        Material material;
+        material.baseColourTexture.image = i;
+        scene.materials.push_back(material);
+    }
+    const TextureArrays layout = textureArrays(scene, TextureRole::Colour);
+    ASSERT_TRUE(layout.tiled());
+    std::vector<TextureRef> references;
+    for (const int image : {1, 700, 2099})
+        for (const bool nearest : {true, false})
+            for (const Wrap wrap : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge}) {
+                TextureRef reference;
+                reference.image = image;
+                reference.nearest = nearest;
+                reference.wrapS = reference.wrapT = wrap;
+                reference.scale = {3.3F, 2.7F};
+                reference.offset = {-1.2F, -0.9F};
+                references.push_back(reference);
+            }
+    SceneFacts single;
+    single.hasTextures = true;
+    single.colourTextureArrays = 1;
+    SceneFacts shared = single;
+    shared.hasTiledTextures = true;
+    for (const TextureRef& reference : references) {
+        SCOPED_TRACE(testing::Message() << "image " << reference.image << ", wrap " << int(reference.wrapS)
+                                        << (reference.nearest ? ", nearest" : ", linear"));
+        Scene one;
+        one.images = {scene.images[static_cast<size_t>(reference.image)]};
+        one.materials.resize(1);
+        one.materials[0].baseColourTexture = reference;
+        one.materials[0].baseColourTexture.image = 0;
+        scene.materials[0].baseColourTexture = reference;
+        GpuScene gpuOne(one), gpuAll(scene);
+        gpuOne.update(geometryOf({{{-1, -1}, {1, 1}}}));
+        gpuAll.update(geometryOf({{{-1, -1}, {1, 1}}}));
+        const Image wanted = draw(gpuOne, single), image = draw(gpuAll, shared);
+        // The driver's own filter has 8 bits of a texel's width, here up to 1/256 of the step between two
+        // texels.
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                for (int c = 0; c < 4; ++c)
+                    ASSERT_NEAR(image.at(x, y, c), wanted.at(x, y, c), reference.nearest ? 1e-6F : 0.006F)
+                        << x << ", " << y << ", " << c;
+    }
+}
+
 TEST_F(TexturedSceneTest, NormalMapsBendAlongTangentAndBitangent) {
     Scene scene;
     scene.images = {imageOf(1, 1, {{255, 128, 128, 255}}), imageOf(1, 1, {{128, 255, 128, 255}})};

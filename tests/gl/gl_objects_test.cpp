@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "gl/debug_output.h"
 #include "gl_fixture.h"
 #include "graph/memory.h"
 #include <gmock/gmock.h>
@@ -41,6 +42,43 @@ std::vector<std::byte> patternOf(Format format, size_t texels) {
         }
     }
     return bytes;
+}
+
+TEST(CutText, EndsBetweenCharacters) {
+    EXPECT_EQ(gl::cutText("abc", 3), "abc");
+    EXPECT_EQ(gl::cutText("abcd", 3), "abc");
+    EXPECT_EQ(gl::cutText("ab\u00e9", 3), "ab"); // two bytes, of which one would fit
+    EXPECT_EQ(gl::cutText("ab\u00e9", 4), "ab\u00e9");
+    EXPECT_EQ(gl::cutText("\u20ac", 2), "");
+    EXPECT_EQ(gl::cutText("abc", 0), "");
+}
+
+// The fixture holds that no GL error comes up.
+TEST_F(ObjectsTest, LabelsOfAnyLengthAreTakenAsFarAsTheDriverDoes) {
+    GLint most = 0, mostOfGroup = 0;
+    glGetIntegerv(GL_MAX_LABEL_LENGTH, &most);
+    glGetIntegerv(GL_MAX_DEBUG_MESSAGE_LENGTH, &mostOfGroup);
+    for (const GLint length : {most - 1, most, 10 * most}) {
+        const std::string label(static_cast<size_t>(length), 'x');
+        const gl::Texture texture(Desc::texture2D(Format::R8, {2, 2, 1}), label);
+        const gl::Buffer buffer(64, label);
+        EXPECT_NE(buffer.texelView(Format::R32F), 0U);
+        const gl::VertexArray none(label);
+        std::vector<char> held(static_cast<size_t>(most) + 1);
+        GLsizei size = 0;
+        glGetObjectLabel(GL_TEXTURE, texture.name(), most, &size, held.data());
+        EXPECT_EQ(size, most - 1);
+        const std::string file = label.substr(0, static_cast<size_t>(std::min(length, 200))) + ".comp";
+        const gl::Program program(test::composeTexts({
+                                      {file, "layout(local_size_x = 1) in;\nvoid main() {}\n"},
+                                  }),
+                                  {}, test::context().capabilities());
+        EXPECT_NE(program.name(), 0U);
+    }
+    for (const GLint length : {mostOfGroup - 1, mostOfGroup, 3 * mostOfGroup}) {
+        gl::pushDebugGroup(0, std::string(static_cast<size_t>(length), 'x'));
+        glPopDebugGroup();
+    }
 }
 
 TEST_F(ObjectsTest, TexelsOfEveryFormatComeBack) {

@@ -179,7 +179,16 @@ TEST_F(EnvironmentTest, APictureIsLookedUpByDirection) {
         }
 }
 
-TEST_F(EnvironmentTest, PicturesOutsideTheFolderAreRefused) {
+TEST_F(EnvironmentTest, PicturesMayLieAnywhereButMustBeThere) {
+    const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "kestrel_environment";
+    std::filesystem::create_directories(folder / "model");
+    writeImage(folder / "grey.exr", Image(2, 1, 3, 0.25f), Encoding::Linear);
+    const std::string scene = (folder / "model" / "scene.gltf").string();
+    for (const std::string& file : {std::string("../grey.exr"), (folder / "grey.exr").string()})
+        EXPECT_NEAR(seen(fmt::format(R"("kind": "picture", "file": "{}")", file), scene).at(3, 3, 1), 0.25f,
+                    1e-3f)
+            << file;
+    std::filesystem::remove_all(folder);
     for (const char* file : {"../secret.exr", "/etc/passwd.exr", "missing.exr"})
         EXPECT_THROW(seen(fmt::format(R"("kind": "picture", "file": "{}")", file),
                           (std::filesystem::path(::testing::TempDir()) / "scene.gltf").string()),

@@ -308,21 +308,148 @@ TEST_F(DirectLightTest, StrongAndOddLightsStayFinite) {
     empty.frame();
 }
 
-TEST_F(DirectLightTest, ByGeometryShaderItIsTheSame) {
-    Light light = lightOf(LightKind::Point, 2);
-    std::vector<glm::vec3> corners = join(square(), quad({0, 0, 0.5f}, {0.25f, 0, 0}, {0, 0.25f, 0}));
-    const Scene scene = litScene(corners, {{light, {0.1f, 0.3f, 1}, {0, 0, -1}}});
-    const auto with = [&](bool extension) {
-        Capabilities capabilities = context().capabilities();
-        if (!extension) capabilities.extensions.erase("GL_ARB_shader_viewport_layer_array");
-        RenderOptions options;
-        options.size = frame;
-        Renderer made(directGraph(), withProbe(), scene, capabilities, options);
-        made.setFreeCamera(squareCamera());
-        made.frame();
-        return made.read({"direct", "result"});
-    };
-    EXPECT_LE(difference(with(true), with(false)).rms, 1e-3);
+// A ring of walls around a light that stands low over the plane: nothing outside of it is lit, by a cone of
+// 180 degrees as by all directions.
+TEST_F(DirectLightTest, AWideSpotLightIsShadowedToItsEdge) {
+    std::vector<glm::vec3> corners = square();
+    for (const glm::vec3& out :
+         {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, -1, 0)})
+        for (const float z : {0.15f, -0.15f}) // the lower one keeps the middle of the bounds at the origin
+            corners = join(corners, quad(0.5f * out + glm::vec3(0, 0, z), 0.51f * glm::vec3(out.y, out.x, 0),
+                                         {0, 0, 0.16f}));
+    Light wide = lightOf(LightKind::Spot, 3);
+    for (const float cone : {1.45f, pi / 2}) {
+        wide.innerCone = wide.outerCone = cone;
+        const glm::vec3 at(0.05f, 0.02f, 0.05f);
+        const Image spot = picture(directGraph(), litScene(corners, {{wide, at, {0, 0, -1}}}));
+        const Image point =
+            picture(directGraph(), litScene(corners, {{lightOf(LightKind::Point, 3), at, {0, 0, -1}}}));
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const glm::vec3 p = squarePoint(spot, x, y);
+                const float reach = std::max(std::abs(p.x), std::abs(p.y));
+                if (std::abs(reach - 0.5f) < 0.04f) continue;
+                const float angle = std::atan2(glm::length(glm::vec2(p - at)), at.z);
+                if (reach > 0.5f) {
+                    ASSERT_NEAR(spot.at(x, y), 0, 1e-6f) << cone << " at " << x << ", " << y;
+                } else if (angle < cone - 0.02f) {
+                    ASSERT_NEAR(spot.at(x, y), point.at(x, y), 1e-3f * point.at(x, y)) << x << ", " << y;
+                }
+            }
+    }
+}
+
+TEST_F(DirectLightTest, ThirtyThreeLampsAndASunAllShine) {
+    std::vector<PlacedLight> lights;
+    for (int i = 0; i < 33; ++i)
+        lights.push_back(
+            {lightOf(LightKind::Point, 1),
+             {0.25f * static_cast<float>(i % 6) - 0.6f, 0.25f * static_cast<float>(i / 6) - 0.6f, 1},
+             {0, 0, -1}});
+    lights.push_back({lightOf(LightKind::Directional, 2), {0, 0, 1}, {0, 0, -1}});
+    const Scene scene = litScene(square(), lights);
+    expectIrradiance(
+        picture(directGraph("\"resolution\": 64"), scene),
+        [&](const glm::vec3& p) {
+            float sum = 2;
+            for (size_t i = 0; i < 33; ++i) sum += 1 / std::pow(glm::length(lights[i].position - p), 3.0f);
+            return sum;
+        },
+        1e-4f);
+}
+
+// Draws the depth that a light's view sees.
+class LightViewProbe : public Pass {
+public:
+    static PassType type() {
+        return Describe<LightViewProbe>("LightViewProbe", "Shows the depth that a light sees")
+            .output("depth", PortKind::Texture, "Depth")
+            .number("light", &LightViewProbe::light, 0, 100, "", "Which light")
+            .number("face", &LightViewProbe::face, 0, 5, "", "Which face");
+    }
+    [[nodiscard]] Declaration declare(const World& world, const Inputs&, const Demand&) const override {
+        // 64 texels, of which 3 on each side are a guard, as of a shadow map.
+        const View view{.source = LightView{.light = light, .face = face, .side = 58}, .guard = 3};
+        Declaration declaration;
+        declaration.outputs = {{.port = "depth",
+                                .desc = Desc::texture2D(Format::D32F, world.extentOf(view), view),
+                                .clear = glm::vec4(0)}};
+        declaration.steps = {{.name = "draw",
+                              .shaders = {"light_view.vert", "light_view.frag"},
+                              .uses = {{.port = "depth", .access = Access::Attachment, .write = true}}}};
+        return declaration;
+    }
+    void execute(const Step&, Commands& commands) override {
+        DrawState state;
+        state.cull = Cull::None;
+        commands.drawScene(state, {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided});
+    }
+    int light = 0, face = 0;
+};
+
+TEST_F(DirectLightTest, ALightsViewSeesWhatItsShadowMapHolds) {
+    Registry registry = shipped();
+    registry.add(LightViewProbe::type());
+    const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "light_view_shaders";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "light_view.vert") << R"(#include "lib/vertex.glsl"
+#include "shared/view.h"
+layout(std140) uniform DepthView { ViewData depth_view; };
+void main() { gl_Position = depth_view.viewProjection * vec4(in_position, 1.0); }
+)";
+    std::ofstream(folder / "light_view.frag") << "void main() {}\n";
+    registry.shaderFolders.push_back(folder);
+
+    // Something on every side of the lights, which stand off the middle and look askew.
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < 6; ++i) {
+        glm::vec3 out(0), side(0), along(0);
+        out[i / 2] = i % 2 == 0 ? 1 : -1;
+        side[(i / 2 + 1) % 3] = 0.7f;
+        along[(i / 2 + 2) % 3] = 0.4f;
+        corners = join(corners, quad(out + 0.3f * side, side, along + 0.2f * out));
+        corners = join(corners, quad(-out - 0.3f * side, side, along + 0.2f * out));
+    }
+    for (const LightKind kind :
+         {LightKind::Point, LightKind::Spot, LightKind::Directional, LightKind::Rectangle})
+        for (const float cone : {0.8f, pi / 2}) {
+            if (kind != LightKind::Spot && cone > 1) continue;
+            Light light = lightOf(kind, 1);
+            light.innerCone = 0.1f;
+            light.outerCone = cone;
+            light.halfSize = {0.1f, 0.1f};
+            const Scene scene = litScene(corners, {{light, {0.1f, -0.2f, 0.05f}, {0.3f, -0.2f, -1}}});
+            const int faces = kind == LightKind::Point                                                ? 6
+                              : kind == LightKind::Rectangle || (kind == LightKind::Spot && cone > 1) ? 5
+                                                                                                      : 1;
+            for (int face = 0; face < faces; ++face) {
+                SCOPED_TRACE(fmt::format("kind {}, cone {}, face {}", static_cast<int>(kind), cone, face));
+                RenderOptions options;
+                options.size = {40, 30, 1};
+                Renderer made(
+                    graphOf(fmt::format(R"("g": {{"type": "GBuffer"}}, "direct": {{"type": "DirectLight",
+                                          "properties": {{"resolution": 64}}}},
+                                          "probe": {{"type": "LightViewProbe", "properties": {{"face": {}}}}})",
+                                        face),
+                            R"(["g.depth", "direct.depth"], ["g.normal", "direct.normal"])",
+                            R"("direct.shadow_maps", "probe.depth")"),
+                    registry, scene, context().capabilities(), options);
+                made.frame();
+                const Image map = made.read({"direct", "shadow_maps"}, face);
+                const Image view = made.read({"probe", "depth"});
+                ASSERT_EQ(map.sizeText(), view.sizeText());
+                const bool mirrored = face == 2 || face == 4 || face == 5;
+                int covered = 0, other = 0;
+                for (int y = 0; y < 64; ++y)
+                    for (int x = 0; x < 64; ++x) {
+                        const float held = map.at(mirrored ? 63 - x : x, y), seen = view.at(x, y);
+                        covered += held > 0 ? 1 : 0;
+                        other += std::abs(held - seen) > 1e-4f * std::max(held, seen) ? 1 : 0;
+                    }
+                EXPECT_GT(covered, 200);
+                EXPECT_LE(other, 20) << "pixels at edges, where rounding decides";
+            }
+        }
 }
 
 } // namespace

@@ -10,7 +10,7 @@ using Settings = std::vector<std::string>;
 struct Extremes : ShippedTest {
     static constexpr Extent small{48, 27, 1};
 
-    // Both tracers, every method of map that this driver has, a blur and the hit count.
+    // Both tracers, three methods of map (EveryMethod has all), a blur and the hit count.
     static void expectSound(const Scene& scene, Extent size = small) {
         RenderOptions options;
         options.checkFinite = true;
@@ -36,6 +36,52 @@ struct Extremes : ShippedTest {
         }
     }
 };
+
+// Every method of map on the scenes that are hard for one: nothing, one triangle, slivers, cells' borders.
+struct EveryMethod : Extremes, ::testing::WithParamInterface<std::pair<const char*, const char*>> {};
+
+TEST_P(EveryMethod, IsSoundWhereGeometryIsHard) {
+    const auto [method, extension] = GetParam();
+    if (extension != nullptr && !context().capabilities().has(extension))
+        GTEST_SKIP() << "this driver has no " << extension;
+    std::vector<glm::vec3> borders;
+    for (const float z : {-1.0f, 0.0f, 0.25f, 1.0f})
+        for (const glm::vec3& p : square()) borders.push_back(p + glm::vec3(0, 0, z));
+    const std::vector<std::vector<glm::vec3>> all = {
+        {},
+        {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0.5f}},
+        {{-1, 0.5f, 0}, {1, 0.5f, 0}, {0, 0.5f + 1e-7f, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+        borders};
+    RenderOptions options;
+    options.checkFinite = true;
+    for (const std::vector<glm::vec3>& corners : all) {
+        Renderer made =
+            renderer(shippedGraph("ray_ao", {std::string("bom.method=") + method, "bom.resolution=64"}),
+                     trianglesScene(corners), options, small);
+        for (int i = 0; i < 2; ++i) made.frame();
+        const Image image = made.read({"mean", "result"});
+        for (const float value : image.values) ASSERT_TRUE(value >= 0 && value <= 1) << corners.size();
+        // Squares one behind the other hide much of the sky from each other, by whatever method.
+        if (corners.size() == borders.size()) {
+            EXPECT_LT(*std::min_element(image.values.begin(), image.values.end()), 1.0f);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
+                         ::testing::Values(std::pair{"three_axis", static_cast<const char*>(nullptr)},
+                                           std::pair{"logic_op", static_cast<const char*>(nullptr)},
+                                           std::pair{"interlock", "GL_ARB_fragment_shader_interlock"},
+                                           std::pair{"framebuffer_fetch", "GL_EXT_shader_framebuffer_fetch"},
+                                           std::pair{"dominant_axis", static_cast<const char*>(nullptr)},
+                                           std::pair{"exact", static_cast<const char*>(nullptr)}),
+                         [](const auto& info) { return std::string(info.param.first); });
+
+TEST_F(Extremes, TheMethodsOfTheTestAreThoseOfThePass) {
+    const PropertyInfo* method = shipped().find("OccupancyMap")->property("method");
+    EXPECT_EQ(method->choices, (std::vector<std::string>{"three_axis", "logic_op", "interlock",
+                                                         "framebuffer_fetch", "dominant_axis", "exact"}));
+}
 
 TEST_F(Extremes, AnEmptyScene) { expectSound(trianglesScene({})); }
 

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "scene/gltf_import.h"
+#include "support/message.h"
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -113,6 +114,13 @@ public:
         return importGltf(folder / "test.gltf");
     }
 };
+
+// What importing the file says; "no error" where it loads.
+inline std::string importMessage(const GltfBuilder& builder, const GltfLimits& limits = {}) {
+    const TemporaryFolder folder;
+    writeFile(folder / "test.gltf", builder.text());
+    return messageOf([&] { (void)importGltf(folder / "test.gltf", {}, limits); });
+}
 
 // One triangle: accessors 0 (positions) and 1 (indices), mesh 0, node 0.
 inline GltfBuilder triangleFile() {

@@ -153,7 +153,8 @@ TEST(MaterialDefines, SayWhatTheSceneHas) {
                                                {"MATERIAL_MASKED", "1"}}));
     facts.hasNormalMaps = true;
     facts.hasVertexColours = true;
-    EXPECT_EQ(materialDefines(facts).size(), 6U);
+    facts.hasTiledTextures = true;
+    EXPECT_EQ(materialDefines(facts).size(), 7U);
 }
 
 TEST(MaterialDefines, EveryCombinationCompiles) {

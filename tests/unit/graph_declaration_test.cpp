@@ -231,5 +231,51 @@ TEST(Declaration, KeepAllFallsBackToWhatAPassCanBear) {
               "no error");
 }
 
+TEST(Declaration, LayersOfUsesAreChecked) {
+    const auto use = [](Use bad) {
+        return mistake(spoilt([bad](Declaration& d) {
+            d.outputs[0].desc = Desc::array2D(Format::R32F, {4, 4, 3});
+            d.steps[0].uses = {reads("x"), bad};
+        }));
+    };
+    const auto layer = [](Use of, int number) {
+        of.layer = number;
+        return of;
+    };
+    EXPECT_EQ(use(layer(writes("r"), 2)), "no error");
+    EXPECT_EQ(use(layer(writes("r", Access::Attachment), 2)), "no error");
+    EXPECT_EQ(use(layer(writes("r"), 3)), "g.json:2:1: pass 'p' (P), 'r': the step 's' uses layer 3 of 3");
+    EXPECT_EQ(
+        mistake(spoilt([&](Declaration& d) { d.steps[0].uses[0] = layer(reads("x", Access::Fetch), 0); })),
+        "g.json:3:11: pass 'p' (P), 'x': the step 's' uses layer 0 of a texture by fetch, which has no "
+        "layers");
+}
+
+TEST(Views, AreTakenApartByWhatTheyLookFrom) {
+    const View frame{}, camera{.source = CameraView{.camera = 1}}, named{.source = CameraView{.name = "top"}},
+        eye{.source = CubeView{.face = 2}},
+        place{.source = CubeView{.face = 2, .point = glm::vec3(1, 2, 3), .farPlane = 0, .side = 64}},
+        light{.source = LightView{.light = 3, .face = 1}};
+    EXPECT_EQ(describe(frame), "");
+    EXPECT_EQ(describe(camera), "camera 1");
+    EXPECT_EQ(describe(named), "camera 'top'");
+    EXPECT_EQ(describe(eye), "cube face 2 about the eye, from 0.01 to 100");
+    EXPECT_EQ(describe(place), "cube face 2 about (1, 2, 3), from 0.01 to infinity, 64 pixels a side");
+    EXPECT_EQ(describe(light), "light 3, face 1");
+    EXPECT_EQ(describe(Desc::texture2D(Format::R32F, {4, 4, 1}, camera)), "r32f 4x4 seen by camera 1");
+    EXPECT_NE(eye, place);
+    EXPECT_NE(frame, camera);
+    EXPECT_EQ(causesOf(frame), Causes::None);
+    EXPECT_EQ(causesOf(camera), Causes::Cameras);
+    EXPECT_EQ(causesOf(eye), Causes::Camera | Causes::Cut);
+    EXPECT_EQ(causesOf(place), Causes::None);
+    EXPECT_EQ(causesOf(light), Causes::Lights);
+    World world;
+    world.size = {640, 360, 1};
+    EXPECT_EQ(world.extentOf(camera), (Extent{640, 360, 1}));
+    EXPECT_EQ(world.extentOf(eye), (Extent{360, 360, 1}));
+    EXPECT_EQ(world.extentOf(place), (Extent{64, 64, 1}));
+}
+
 } // namespace
 } // namespace kestrel

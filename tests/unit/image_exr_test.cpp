@@ -233,6 +233,16 @@ TEST(Exr, ReadsOnePartOfSeveral) {
               "'file:left.diffuse'");
 }
 
+TEST(Exr, ReadsTheViewsOfOnePart) {
+    ExrPicture picture{.data = window(0, 0, 3, 2), .planes = colourPlanes(""), .views = {"left", "right"}};
+    for (const ExrPlane& plane : colourPlanes("right.", 4)) picture.planes.push_back(plane);
+    const Bytes bytes = exrFile(picture);
+    EXPECT_EQ(decodeImage(bytes, "file"), colours(picture.data));
+    EXPECT_THAT(warningsOf(bytes), HasSubstr("file: took the layer 'left'; left out: the channels right.B"));
+    EXPECT_EQ(decodeImage(bytes, "file", "left"), colours(picture.data));
+    EXPECT_EQ(decodeImage(bytes, "file", "right"), colours(picture.data, 4));
+}
+
 TEST(Exr, RefusesDeepDataByName) {
     const auto data = window(0, 0, 4, 3);
     ExrPicture deep{.name = "volume",

@@ -40,6 +40,7 @@ struct ExrPicture {
     Imf::LineOrder order = Imf::INCREASING_Y;
     std::vector<ExrPlane> planes = {};
     bool deep = false;
+    std::vector<std::string> views = {}; // the first is that of channels without a layer's name
 };
 
 inline Imath::Box2i window(int x, int y, int width, int height) {
@@ -95,6 +96,7 @@ inline Imf::Header exrHeader(const ExrPicture& picture) {
         header.channels().insert(plane.name, Imf::Channel(plane.type, plane.sampling, plane.sampling));
     if (!picture.name.empty()) header.setName(picture.name);
     if (picture.chromaticities) Imf::addChromaticities(header, *picture.chromaticities);
+    if (!picture.views.empty()) Imf::addMultiView(header, picture.views);
     if (picture.tiles) header.setTileDescription(*picture.tiles);
     header.setType(picture.deep ? Imf::DEEPSCANLINE : picture.tiles ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
     return header;

@@ -77,7 +77,7 @@ TEST(SweepFile, ReadsWhatItSays) {
 TEST(SweepFile, TellsEveryMistakeAtOnceWithItsPlace) {
     const std::vector<std::string> mistakes = mistakesOf(R"({ "kestrel_sweep": 1, "repeets": 3,
  "size": [0, 36],
- "scenes": ["builtin:blob", "builtin:blob", "../other.glb"],
+ "scenes": ["builtin:blob", "builtin:blob", { "source": "../other.glb", "camra": "" }, ""],
  "variants": [
   { "name": "a", "graph": "g.json", "output": "ao" },
   { "name": "a", "graph": "g.json", "output": "ao.visibility", "hits": "q.hits",
@@ -89,7 +89,10 @@ TEST(SweepFile, TellsEveryMistakeAtOnceWithItsPlace) {
     EXPECT_THAT(mistakes, Contains(HasSubstr("did you mean 'repeats'")));
     EXPECT_THAT(mistakes, Contains(HasSubstr("s.json:2:10: 'size' must be")));
     EXPECT_THAT(mistakes, Contains(HasSubstr("s.json:3:29: the scene 'blob' is there twice")));
-    EXPECT_THAT(mistakes, Contains(HasSubstr("s.json:3:45: the scene '../other.glb' must be")));
+    EXPECT_THAT(mistakes,
+                Contains(HasSubstr("s.json:3:73: a scene has no key 'camra' (did you mean 'camera'?)")));
+    EXPECT_THAT(mistakes,
+                Contains(HasSubstr("the scene must be 'builtin:NAME' or name a .gltf or .glb file")));
     EXPECT_THAT(mistakes, Contains(HasSubstr("s.json:5:47: 'output' must be \"pass.port\", not 'ao'")));
     EXPECT_THAT(mistakes, Contains(HasSubstr("either 'output' (a picture) or 'hits'")));
     EXPECT_THAT(mistakes, Contains(HasSubstr("the variant 'a' is there twice")));
@@ -101,6 +104,29 @@ TEST(SweepFile, TellsEveryMistakeAtOnceWithItsPlace) {
     EXPECT_THAT(mistakes,
                 Contains(HasSubstr("'flipp' is none of flip, mse, rmse and ssim (did you mean 'flip'?)")));
     EXPECT_THAT(mistakes, Contains(HasSubstr("needs the sweep's 'reference'")));
+}
+
+// Each key's bounds and kind, as the table that the schema is made of says.
+TEST(SweepFile, EveryNumberIsHeldAgainstItsRange) {
+    const std::tuple<std::string, int, int> keys[] = {{"frames", 1, maxSweepFrames},
+                                                      {"warm_up", 0, maxSweepFrames},
+                                                      {"repeats", 1, maxSweepRepeats},
+                                                      {"timed_frames", 1, maxSweepFrames},
+                                                      {"seed", 0, maxSweepSeed}};
+    for (const auto& [key, low, high] : keys) {
+        for (const int good : {low, high})
+            EXPECT_NO_THROW(static_cast<void>(sweepOf(plain, fmt::format(R"("{}": {}, )", key, good))))
+                << key;
+        const std::string wanted = fmt::format("'{}' must be a whole number from {} to {}", key, low, high);
+        for (const std::string& bad :
+             {std::to_string(low - 1), std::to_string(high + 1), std::string("1.5"), std::string("\"1\"")})
+            EXPECT_THAT(
+                mistakesOf(head + fmt::format(R"("{}": {}, "variants": [)", key, bad) + plain + "] }"),
+                testing::Contains(HasSubstr(wanted)))
+                << key << " " << bad;
+    }
+    EXPECT_THAT(mistakesOf(head + R"("hdr": 1, "variants": [)" + plain + "] }"),
+                testing::Contains(HasSubstr("'hdr'")));
 }
 
 TEST(SweepFile, RefusesOtherVersionsAndHostileSizes) {

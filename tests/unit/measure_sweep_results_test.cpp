@@ -1,4 +1,5 @@
 #include "core/files.h"
+#include "execute/renderer.h"
 #include "measure/sweep_hits.h"
 #include "measure/sweep_results.h"
 #include "shared/ray.h"
@@ -62,6 +63,18 @@ protected:
         return result;
     }
 
+    // Why the folder "out" is not taken; empty if it is.
+    [[nodiscard]] std::string refusal(bool resume, const SweepMachine& by) const {
+        try {
+            SweepFolder(root / "out", sweep).begin(resume, &by);
+        } catch (const InputError& error) {
+            std::string all;
+            for (const Problem& problem : error.problems()) all += problem.text() + "\n";
+            return all;
+        }
+        return "";
+    }
+
     // Everything of these units measured.
     void measure(const SweepFolder& folder, const Shard& shard, double scale = 1) {
         for (size_t i = 0; i < units.size(); ++i) {
@@ -81,7 +94,7 @@ protected:
     Sweep sweep;
     std::vector<SweepPoint> points;
     std::vector<SweepUnit> units;
-    SweepMachine machine{"aaaaaa", "cpu", "renderer", "driver", "finish", "0", 2};
+    SweepMachine machine{"aaaaaa", "cpu", "renderer", "driver", "finish", "0", 2, "2026-01-31"};
 };
 
 TEST(Quartiles, AreLinearBetweenSortedValues) {
@@ -225,6 +238,46 @@ TEST_F(SweepResultsTest, CsvQuotesAndHasAsManyFieldsInEveryLine) {
     EXPECT_THAT(counts, testing::Each(counts.front()));
 }
 
+TEST_F(SweepResultsTest, MarkdownHasTheTablesWithTheirCommand) {
+    const SweepFolder folder(root / "out", sweep);
+    folder.begin(false, &machine);
+    folder.write(machine);
+    measure(folder, {});
+    folder.write(units[1], points[1], [] {
+        SweepPicture failed;
+        failed.failed = "it does not compile";
+        return failed;
+    }());
+    sweep.framesGiven = true;
+    const std::string json = resultsJson(sweep, folder.gather(points, units));
+    const std::string expected = fmt::format(R"(## T
+
+    kestrel sweep {}/s.json --frames 16 --out results
+
+640x360, pictures after 16 frames, medians of 2 repetitions of 1 timed frames.
+Machine aaaaaa, 2026-01-31: cpu, 2 threads; renderer; driver; clock: finish; Kestrel 0. Spin test: one thread 20.0 ms (20.0 to 20.0), two at once 21.0 ms (21.0 to 21.0).
+In bold: on the Pareto front of its plot.
+
+### blob
+
+| variant | total, ms | generation, ms | tracing, ms | half quartile distance | FLIP | RMSE | memory, MiB |
+|---|---:|---:|---:|---:|---:|---:|---:|
+| **a, x 1** | 13.5 | 7.50 | 6.00 | 2.25 | 0.100 | 0.100 | 0.000106 |
+| **a, x 2** | 22.5 | 12.5 | 10.0 | 2.25 | 0.0500 | 0.0500 | 0.000106 |
+| **b, \<"c"\>** | 31.5 | 17.5 | 14.0 | 2.25 | 0.0333 | 0.0333 | 0.000106 |
+
+### tower
+
+)",
+                                             root.string());
+    const std::string text = resultsMarkdown(json, "x");
+    EXPECT_EQ(text.substr(0, expected.size()), expected);
+    EXPECT_THAT(text,
+                HasSubstr("| a, x 2 | failed | failed | failed | failed | failed | failed | failed |\n"));
+    EXPECT_THROW(static_cast<void>(resultsMarkdown("{", "x")), InputError);
+    EXPECT_THROW(static_cast<void>(resultsMarkdown("{}", "x")), InputError);
+}
+
 TEST_F(SweepResultsTest, ThePageHasNoOutsideLinkAndNoTextThatBecomesMarkup) {
     const SweepFolder folder(root / "out", sweep);
     folder.begin(false, &machine);
@@ -239,24 +292,58 @@ TEST_F(SweepResultsTest, ThePageHasNoOutsideLinkAndNoTextThatBecomesMarkup) {
     EXPECT_THAT(page, HasSubstr("b, \\u003c\\\"c\\\">"));
 }
 
-TEST_F(SweepResultsTest, AFolderIsKeptFromOtherSweepsAndMachines) {
-    const SweepFolder folder(root / "out", sweep);
-    folder.begin(false, &machine);
-    const auto refusal = [&](bool resume, const SweepMachine& by) -> std::string {
-        try {
-            SweepFolder(root / "out", sweep).begin(resume, &by);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "";
-    };
+TEST_F(SweepResultsTest, AFolderIsKeptFromOtherMachines) {
+    SweepFolder(root / "out", sweep).begin(false, &machine);
     EXPECT_THAT(refusal(false, machine), HasSubstr("--resume goes on"));
     EXPECT_EQ(refusal(true, machine), "");
     SweepMachine other = machine;
     other.id = "bbbbbb";
     EXPECT_THAT(refusal(true, other), HasSubstr("times compare within one machine only"));
+}
+
+TEST_F(SweepResultsTest, WhatASweepGainsJoinsAndWhatChangesIsTold) {
+    SweepFolder(root / "out", sweep).begin(false, &machine);
+    load(R"("plot": { "error": "mse" }, "comment": "C", )"); // nothing that is measured
+    EXPECT_EQ(refusal(true, machine), "");
+    writeFile(root / "s.json", std::string_view(R"({ "kestrel_sweep": 1,
+        "scenes": ["builtin:hall", "builtin:blob"],
+        "reference": { "graph": "g.json", "output": "truth.visibility" },
+        "variants": [{ "name": "new", "graph": "g.json", "output": "ao.visibility" },
+                     { "name": "a", "graph": "g.json", "output": "ao.visibility", "axes": { "p.x": [2, 3] } }] })"));
+    sweep = loadSweep(root / "s.json");
+    EXPECT_EQ(refusal(true, machine), "") << "a scene, a variant and a value more, others gone";
+    load();
+    EXPECT_EQ(refusal(true, machine), "") << "those that were gone are still known";
+
+    const auto changed = [&](const std::string& more, const std::string& from = "",
+                             const std::string& to = "") {
+        load(more);
+        std::string text = readText(root / "s.json");
+        if (!from.empty()) text.replace(text.find(from), from.size(), to);
+        writeFile(root / "s.json", std::string_view(text));
+        sweep = loadSweep(root / "s.json");
+        return refusal(true, machine);
+    };
+    EXPECT_THAT(changed(R"("frames": 3, )"), HasSubstr("'frames' was 16 and is 3"));
+    EXPECT_THAT(changed(R"("seed": 3, )"), HasSubstr("'seed' was 0 and is 3"));
+    EXPECT_THAT(changed(R"("rebuild": true, )"), HasSubstr("'rebuild' was false and is true"));
+    EXPECT_THAT(changed("", "truth.visibility", "truth.other"),
+                HasSubstr("'output' of the reference was 'truth.visibility' and is 'truth.other'"));
+    EXPECT_THAT(changed("", R"("axes": {)", R"("set": ["p.y=1"], "axes": {)"),
+                HasSubstr(R"('set' of the variant 'a, x 1' was ["p.x=1"] and is ["p.y=1","p.x=1"])"));
+    EXPECT_THAT(changed("", R"("axes": {)", R"("frames": 2, "axes": {)"),
+                HasSubstr("'frames' of the variant 'a, x 1' was null and is 2"));
+    // "B/c" would lie where "b, <"c">" lies.
+    EXPECT_THAT(changed("", R"("b, <\"c\">")", R"("B/c")"),
+                HasSubstr(R"(the variant 'B/c' would lie in the files of 'b, <"c">', which was measured)"));
+    load();
     writeFile(root / "g.json", std::string_view(R"({ "kestrel": 1, "passes": {}, "name": "changed" })"));
-    EXPECT_THAT(refusal(true, machine), HasSubstr("another form of s.json"));
+    EXPECT_THAT(refusal(true, machine), HasSubstr("the text of the graph 'g.json' has changed"));
+    for (const char* damaged : {"0123456789abcdef\naaaaaa\n", "{}", "[]", "",
+                                R"({"kestrel_sweep_manifest":1,"machine":"a","facts":{"x":1}})"}) {
+        writeFile(root / "out" / "sweep.manifest", std::string_view(damaged));
+        EXPECT_THAT(refusal(true, machine), HasSubstr("another version of Kestrel, or damaged")) << damaged;
+    }
 }
 
 TEST_F(SweepResultsTest, ShardsJoinToTheWhole) {
@@ -320,6 +407,24 @@ TEST(CompareHits, CountsRaysThatExist) {
         << "hits of any-hit queries have no distance";
     EXPECT_EQ(compareHits(rayBytes({0}), {0}, {none}).agreement, 1) << "of no ray";
     EXPECT_THROW(static_cast<void>(compareHits(rayBytes({1, 1}), {0}, {0})), InputError);
+}
+
+// What reads a table may take "012345" or "925e13" for a number, never a name that begins with a letter.
+TEST(SweepMachine, HasANameThatIsNoNumber) {
+    const SweepMachine machine = thisMachine("renderer", "driver", "clock");
+    EXPECT_THAT(machine.id, testing::MatchesRegex("m[0-9a-f]{6}"));
+    EXPECT_THAT(machine.date, testing::MatchesRegex("20[0-9][0-9]-[01][0-9]-[0-3][0-9]"));
+    EXPECT_EQ(machine.id, thisMachine("renderer", "driver", "clock").id);
+    EXPECT_NE(machine.id, thisMachine("renderer", "driver", "other").id);
+}
+
+// The reference of a moving sweep is rendered at the time that the variants' last frame has.
+TEST(TimeAfter, GoesByFramesAndStartsAgain) {
+    EXPECT_DOUBLE_EQ(timeAfter(0, 10), 1.0 / 60);
+    EXPECT_EQ(timeAfter(5, 0), 0) << "nothing moves";
+    EXPECT_NEAR(timeAfter(1.995, 2), 1.995 + 1.0 / 60 - 2, 1e-12);
+    double time = 0;
+    for (int i = 0; i < 1000; ++i) ASSERT_LE(time = timeAfter(time, 0.01), 0.01);
 }
 
 TEST(ShellWord, QuotesWhatAShellWouldChange) {

@@ -343,5 +343,21 @@ TEST(FinishScene, MirroredTexturesGiveTheOtherHandedness) {
     }
 }
 
+TEST(Facts, CamerasAreNamedAndSpotLightsWiderThanAFlatMapHoldsAreCounted) {
+    Scene scene = boxScene();
+    scene.cameras.resize(2);
+    scene.cameras[1].name = "second";
+    scene.lights.resize(4);
+    for (Light& light : scene.lights) light.kind = LightKind::Spot;
+    scene.lights[1].outerCone = wideSpotCone;
+    scene.lights[2].outerCone = 1.5F;
+    scene.lights[3].kind = LightKind::Point;
+    scene.lights[3].outerCone = 1.5F;
+    const SceneFacts facts = gatherFacts(scene);
+    EXPECT_EQ(facts.cameras, (std::vector<std::string>{"", "second"}));
+    EXPECT_EQ(facts.spotLights, 3U);
+    EXPECT_EQ(facts.wideSpotLights, 1U);
+}
+
 } // namespace
 } // namespace kestrel

@@ -324,8 +324,9 @@ TEST(CameraIndex, FindsByNameAndNamesTheNearOne) {
         cameraIndex(scene, "stiars");
         FAIL() << "no error";
     } catch (const InputError& error) {
-        EXPECT_EQ(std::string(error.what()),
-                  "s.glb: the scene has no camera 'stiars' (did you mean 'stairs'?)");
+        EXPECT_EQ(
+            std::string(error.what()),
+            "s.glb: the scene has no camera 'stiars' (did you mean 'stairs'?); it has 'front' and 'stairs'");
     }
 }
 

@@ -218,6 +218,32 @@ TEST(GltfExport, NamesTheFileThatCannotBeWritten) {
     }
 }
 
+TEST(GltfExport, NamesAJointOnceAVertexWithItsWeightsSummed) {
+    Scene scene = everything();
+    Primitive& primitive = scene.meshes[0].primitives[0];
+    primitive.joints = {{1, 1, 0, 0}, {0, 1, 0, 1}, {1, 1, 1, 1}, {1, 0, 1, 0}};
+    primitive.weights = {
+        {0.5f, 0.5f, 0, 0}, {0.25f, 0.25f, 0.25f, 0.25f}, glm::vec4(0.25f), {0, 0.5f, 0.5f, 0}};
+    const Primitive again = exportedAndLoaded(scene).meshes[0].primitives[0];
+    EXPECT_EQ(again.joints,
+              (std::vector<glm::uvec4>{{1, 0, 0, 0}, {0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}}));
+    EXPECT_EQ(again.weights,
+              (std::vector<glm::vec4>{{1, 0, 0, 0}, {0.5f, 0.5f, 0, 0}, {1, 0, 0, 0}, {0, 0.5f, 0.5f, 0}}));
+}
+
+// Of each vertex: no joint twice, joint 0 where there is no weight.
+TEST(GltfExport, TheSkinnedSceneNamesEachJointOnce) {
+    for (const Mesh& mesh : builtinScene("builtin:skinned?detail=0.1").meshes)
+        for (const Primitive& primitive : mesh.primitives)
+            for (size_t v = 0; v < primitive.joints.size(); ++v)
+                for (int k = 0; k < 4; ++k) {
+                    ASSERT_TRUE(primitive.weights[v][k] > 0 || primitive.joints[v][k] == 0);
+                    for (int other = 0; other < k; ++other)
+                        ASSERT_FALSE(primitive.weights[v][k] > 0 && primitive.weights[v][other] > 0 &&
+                                     primitive.joints[v][k] == primitive.joints[v][other]);
+                }
+}
+
 class BuiltinExport : public testing::TestWithParam<std::string> {};
 
 TEST_P(BuiltinExport, LoadsEqual) {

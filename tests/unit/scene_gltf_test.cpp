@@ -121,7 +121,7 @@ TEST(GltfImport, MakesUnitNormalsAndWeightsThatSumToOne) {
     attributes["NORMAL"] = builder.floats({0, 0, 2, 0, 0, 0, 0.6f, 0.8f, 0}, 3);
     attributes["WEIGHTS_0"] = builder.floats({1, 1, 0, 0, 0, 0, 0, 0, 0.25f, 0.25f, 0.25f, 0.25f}, 4);
     attributes["JOINTS_0"] =
-        builder.accessor<std::uint8_t>({0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4, test::UnsignedByte);
+        builder.accessor<std::uint8_t>({0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3}, 4, test::UnsignedByte);
     const Primitive primitive = builder.import(folder).meshes[0].primitives[0];
     EXPECT_THAT(primitive.normals,
                 ElementsAre(glm::vec3(0, 0, 1), glm::vec3(0, 0, 1), glm::vec3(0.6f, 0.8f, 0)));

@@ -3,6 +3,7 @@
 #include "scene/builtin/scene_builder.h"
 #include "scene/builtin/scenes.h"
 #include "scene/builtin/shapes.h"
+#include "scene/skin_weights.h"
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
@@ -138,6 +139,7 @@ private:
             const float share = std::abs(at - 0.5f);
             p.joints[v] = glm::uvec4(boneAt(nearest), boneAt(other), 0, 0);
             p.weights[v] = glm::vec4(1 - share, share, 0, 0);
+            mergeJoints(p.joints[v], p.weights[v]);
         }
     }
 
