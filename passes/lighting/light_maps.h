@@ -19,11 +19,11 @@ using LightKinds = std::array<bool, 5>; // by LightKind: point, spot, directiona
 struct LightMapLayout {
     std::array<std::uint32_t, 5> counts{}; // by LightKind
     std::array<std::uint32_t, 5> slots{};  // what programs are made for: counts, rounded up to powers of two
-                                          // where those fit
-    std::uint32_t layers = 0;  // of the map arrays
-    bool mapped = true;        // false: lights without maps
-    bool wideSpots = false;    // some spot light's map may have several faces
-    std::uint32_t leftOut = 0; // lights for which there is no place
+                                           // where those fit
+    std::uint32_t layers = 0;              // of the map arrays
+    bool mapped = true;                    // false: lights without maps
+    bool wideSpots = false;                // some spot light's map may have several faces
+    std::uint32_t leftOut = 0;             // lights for which there is no place
 
     [[nodiscard]] std::uint32_t lights() const;
     [[nodiscard]] std::uint32_t allSlots() const;
