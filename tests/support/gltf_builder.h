@@ -117,7 +117,7 @@ public:
 
 // What importing the file says; "no error" where it loads.
 inline std::string importMessage(const GltfBuilder& builder, const GltfLimits& limits = {}) {
-    const TemporaryFolder folder;
+    static const TemporaryFolder folder; // one for thousands of calls
     writeFile(folder / "test.gltf", builder.text());
     return messageOf([&] { (void)importGltf(folder / "test.gltf", {}, limits); });
 }

@@ -99,13 +99,13 @@ TEST(GltfImages, TheWebpIsTakenRatherThanItsFallback) {
 TEST(GltfImages, EveryTruncationOfAWebpIsAnErrorAndAnyMutationIsSurvived) {
     for (const bool lossless : {true, false}) {
         const std::vector<std::uint8_t> whole = webpOf(pixels(16, 16), 16, 16, lossless);
-        for (size_t size = 16; size < whole.size(); ++size)
+        for (size_t size = 16; size < whole.size(); size += 7)
             EXPECT_THAT(
                 importMessage(webpFile({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)})),
                 HasSubstr("images[0] is a broken image"))
                 << size << " of " << whole.size();
         std::mt19937 random(1);
-        for (int round = 0; round < 500; ++round) {
+        for (int round = 0; round < 200; ++round) {
             std::vector<std::uint8_t> bent = whole;
             for (int i = 0; i < 3; ++i) bent[random() % bent.size()] = static_cast<std::uint8_t>(random());
             EXPECT_EQ(importMessage(webpFile(bent), {.decodedPixels = 1 << 20}).find('\n'),
@@ -150,13 +150,15 @@ TEST(GltfImages, WhatNoTextureShowsIsNotRead) {
     EXPECT_EQ(builder.import(folder).images.size(), 1u);
 }
 
-TEST(GltfImages, DISABLED_TooManyPixelsAreReducedWithAWarningThatNamesFigureAndLimit) {
+TEST(GltfImages, TooManyPixelsAreReducedWithAWarningThatNamesFigureAndLimit) {
     GltfBuilder builder = textured();
-    builder.document["textures"] = json::array();
+    builder.document["textures"] = builder.document["materials"] = json::array();
     // 64 x 64 + 32 x 8 + 1 x 1: 4353 pixels.
     for (const auto& [width, height] : {std::pair(64, 64), std::pair(32, 8), std::pair(1, 1)}) {
         addImage(builder, pngOf(pixels(width, height), width, height));
-        builder.document["textures"].push_back({{"source", builder.document["images"].size() - 1}});
+        const size_t index = builder.document["images"].size() - 1;
+        builder.document["textures"].push_back({{"source", index}});
+        builder.document["materials"].push_back({{"normalTexture", {{"index", index}}}});
     }
     EXPECT_TRUE(import(builder, {.pixels = 4353}).warnings.empty());
     const Scene reduced = import(builder, {.pixels = 1300});

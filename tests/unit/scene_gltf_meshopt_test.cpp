@@ -300,7 +300,7 @@ TEST(GltfMeshopt, EveryTruncationAndAnyMutationIsAnErrorOrAScene) {
         const size_t whole =
             good.document["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]["byteLength"]
                 .get<size_t>();
-        for (size_t size = 1; size < whole; ++size) {
+        for (size_t size = 1; size < whole; size += 3) {
             GltfBuilder cut = good;
             cut.document["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]["byteLength"] = size;
             EXPECT_THAT(importMessage(cut), HasSubstr("has a broken compressed stream"))
@@ -308,7 +308,7 @@ TEST(GltfMeshopt, EveryTruncationAndAnyMutationIsAnErrorOrAScene) {
         }
     }
     std::mt19937 random(1);
-    for (int round = 0; round < 300; ++round) {
+    for (int round = 0; round < 200; ++round) {
         GltfBuilder bent = good;
         for (int i = 0; i < 3; ++i)
             bent.data[random() % bent.data.size()] = static_cast<unsigned char>(random());
