@@ -5,12 +5,11 @@
 #include "core/files.h"
 #include "core/log.h"
 #include "gl/context.h"
-#include "measure/run_stats.h"
+#include "graph/report.h"
 #include "scene/facts.h"
 #include "scene/geometry.h"
 #include "shader/validate.h"
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -25,17 +24,24 @@ struct CheckArguments : GraphArguments {
     bool gl = false, minimum = false, keepAll = false, json = false, noShaders = false;
 };
 
+// What a graph is checked against. `chosen`: a device stands behind it, or the user named it; if not, a limit
+// is no mistake of the graph.
+struct Device {
+    Capabilities capabilities;
+    bool chosen = true;
+};
+
 // Those of the file, the minimum, or of this machine: what `render` would run here. Without OpenGL here, the
 // minimum.
-Capabilities capabilitiesOf(const CheckArguments& arguments) {
-    if (!arguments.capabilities.empty()) return readCapabilities(arguments.capabilities);
+Device deviceOf(const CheckArguments& arguments) {
+    if (!arguments.capabilities.empty()) return {readCapabilities(arguments.capabilities)};
     if (arguments.minimum) return {};
-    if (arguments.gl) return gl::Context::create()->capabilities();
+    if (arguments.gl) return {gl::Context::create()->capabilities()};
     try {
-        return gl::Context::create()->capabilities();
+        return {gl::Context::create()->capabilities()};
     } catch (const MachineError& error) {
         logWarning("checked against the minimum of OpenGL 4.6, since there is none here: {}", error.what());
-        return {};
+        return {.capabilities = {}, .chosen = false};
     }
 }
 
@@ -56,53 +62,26 @@ void requireShaders(const Plan& plan, const Registry& registry) {
     if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-std::vector<std::string> stepNames(const Plan& plan, const PlanPass& pass) {
-    std::vector<std::string> names;
-    for (int i = pass.firstStep; i < pass.firstStep + pass.stepCount; ++i)
-        names.push_back(plan.steps.at(static_cast<size_t>(i)).step.name);
-    return names;
+Json checkJson(const Graph& graph, const Scene& scene, const Plan& plan, const Capabilities& capabilities) {
+    Json json = {{"graph", graph.name}, {"scene", scene.name}, {"renderer", capabilities.renderer}};
+    json.update(Json::parse(planJson(plan)));
+    return json;
 }
 
-void printPlan(const Plan& plan, const Capabilities& capabilities) {
-    fmt::print("for: OpenGL {}, {}\n", capabilities.version,
-               capabilities.renderer == "none" ? "the minimum" : capabilities.renderer);
-    fmt::print("order:\n");
-    for (const PlanPass& pass : plan.passes)
-        fmt::print("  {} ({}): {}\n", pass.name, pass.type, fmt::join(stepNames(plan, pass), ", "));
-    fmt::print("resources:\n");
-    for (const PlanResource& resource : plan.resources)
-        fmt::print("  {}: {}{}{}\n", resource.port.text(), describe(resource.desc),
-                   resource.history ? ", with last frame's" : "", resource.transient ? "" : ", stays");
-    fmt::print("memory: {}\n", memoryText(plan.memory));
-    printLeftOut(plan.leftOut);
-}
-
-Json planJson(const Graph& graph, const Scene& scene, const Plan& plan, const Capabilities& capabilities) {
-    Json passes = Json::array(), resources = Json::array(), leftOut = Json::array();
-    for (const PlanPass& pass : plan.passes)
-        passes.push_back({{"name", pass.name}, {"type", pass.type}, {"steps", stepNames(plan, pass)}});
-    for (const PlanResource& resource : plan.resources)
-        resources.push_back({{"port", resource.port.text()},
-                             {"description", describe(resource.desc)},
-                             {"bytes", resource.desc.totalBytes()},
-                             {"transient", resource.transient},
-                             {"history", resource.history},
-                             {"object", resource.object},
-                             {"offset", resource.offset},
-                             {"first_step", resource.firstStep},
-                             {"last_step", resource.lastStep}});
-    for (const LeftOut& item : plan.leftOut) leftOut.push_back({{"what", item.what}, {"why", item.why}});
-    return {{"graph", graph.name},
-            {"scene", scene.name},
-            {"size", {plan.size.width, plan.size.height}},
-            {"renderer", capabilities.renderer},
-            {"passes", passes},
-            {"resources", resources},
-            {"left_out", leftOut},
-            {"memory",
-             {{"transient", plan.memory.transient},
-              {"unshared", plan.memory.unshared},
-              {"persistent", plan.memory.persistent}}}};
+// Against the device; where none is there, what only limits object to is a note.
+Plan planFor(const Graph& graph, const Registry& registry, World world, const CompileOptions& options,
+             bool chosen) {
+    const PassSet passes = makePasses(graph, registry);
+    try {
+        return compile(graph, registry, passes, world, options);
+    } catch (const Error& error) {
+        if (chosen) throw;
+        world.capabilities = Capabilities::unlimited();
+        Plan plan = compile(graph, registry, passes, world, options); // throws if there is more than limits
+        for (const Problem& problem : error.problems())
+            logWarning("beyond the minimum of OpenGL 4.6: {}", problem.message);
+        return plan;
+    }
 }
 
 int check(const CheckArguments& arguments) {
@@ -110,20 +89,23 @@ int check(const CheckArguments& arguments) {
     const Graph graph = openGraph(arguments, registry);
     World world;
     world.size = parseSize(arguments.size);
-    world.capabilities = capabilitiesOf(arguments);
+    const Device device = deviceOf(arguments);
+    world.capabilities = device.capabilities;
     const Scene scene = openScene(arguments, graph);
     static_cast<void>(cameraIndex(scene, arguments.camera.empty() ? graph.sceneCamera : arguments.camera));
     world.facts = gatherFacts(scene);
 
     CompileOptions options;
     options.keepAll = arguments.keepAll;
-    const Plan plan = compile(graph, registry, makePasses(graph, registry), world, options);
+    const Plan plan = planFor(graph, registry, world, options, device.chosen);
     if (!arguments.noShaders) requireShaders(plan, registry);
     if (arguments.json)
-        fmt::print("{}\n", planJson(graph, scene, plan, world.capabilities)
+        fmt::print("{}\n", checkJson(graph, scene, plan, world.capabilities)
                                .dump(2, ' ', false, Json::error_handler_t::replace));
     else
-        printPlan(plan, world.capabilities);
+        fmt::print("for: OpenGL {}, {}\n{}", world.capabilities.version,
+                   world.capabilities.renderer == "none" ? "the minimum" : world.capabilities.renderer,
+                   planText(plan));
     return static_cast<int>(ExitStatus::Done);
 }
 

@@ -94,8 +94,4 @@ PortRef parsePort(const std::string& text) {
     return *port;
 }
 
-void printLeftOut(const std::vector<LeftOut>& leftOut) {
-    for (const LeftOut& item : leftOut) fmt::print("left out: {}, because {}\n", item.what, item.why);
-}
-
 } // namespace kestrel

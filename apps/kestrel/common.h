@@ -37,7 +37,4 @@ Extent parseSize(const std::string& text);
 // "pass.port". Throws InputError for anything else.
 PortRef parsePort(const std::string& text);
 
-// A line each, to standard output.
-void printLeftOut(const std::vector<LeftOut>& leftOut);
-
 } // namespace kestrel

@@ -62,8 +62,8 @@ void addOutput(FileBytes& files, Renderer& renderer, const Registry& registry, c
     }
     const PortInfo* info = portInfo(renderer, registry, output.port);
     const Image image = readLayers(renderer, output.port, renderer.desc(output.port));
-    files.emplace_back(output.file,
-                       encoded(image, imageFormat(output.file), info != nullptr && info->display));
+    files.emplace_back(output.file, encoded(image, imageFormat(output.file),
+                                            info != nullptr && info->content.space == Space::Display));
 }
 
 void addGraphOutputs(FileBytes& files, Renderer& renderer, const Registry& registry,
@@ -83,7 +83,8 @@ void addGraphOutputs(FileBytes& files, Renderer& renderer, const Registry& regis
         }
         const PortInfo* info = portInfo(renderer, registry, output.port);
         const Image image = readLayers(renderer, output.port, desc);
-        files.emplace_back(named(".png"), encoded(image, ImageFormat::Png, info != nullptr && info->display));
+        files.emplace_back(named(".png"), encoded(image, ImageFormat::Png,
+                                                  info != nullptr && info->content.space == Space::Display));
         const bool cutOff = std::ranges::any_of(image.values, [](float v) { return !(v >= 0 && v <= 1); });
         if (cutOff) files.emplace_back(named(".exr"), encoded(image, ImageFormat::Exr, false));
     }

@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "execute/renderer.h"
 #include "gl/context.h"
+#include "graph/report.h"
 #include "measure/run_stats.h"
 #include "output_files.h"
 #include <fmt/format.h>
@@ -41,8 +42,7 @@ void printRun(const Renderer& renderer, const Profile& profile, const FileBytes&
                    pass.runs, profile.frameCount());
     for (const auto& [pass, values] : renderer.last().values)
         for (const auto& [key, value] : values) fmt::print("{}: {} = {}\n", pass, key, value);
-    fmt::print("memory: {}\n", memoryText(renderer.plan().memory));
-    printLeftOut(renderer.plan().leftOut);
+    fmt::print("memory: {}\n{}", memoryText(renderer.plan().memory), leftOutText(renderer.plan().leftOut));
 }
 
 int render(const RenderArguments& arguments) {

@@ -17,6 +17,8 @@ public:
         , demand_(demand) {}
 
     std::vector<DeclarationProblem> run() {
+        for (const PortInfo& port : node_.type->ports)
+            if (port.direction == PortDirection::Input && node_.inputs.connected(port.name)) checkInput(port);
         std::set<std::string> ports;
         for (const Output& output : declaration_.outputs) {
             if (!ports.insert(output.port).second) note(output.port, "is declared twice");
@@ -61,6 +63,20 @@ private:
         return nullptr;
     }
 
+    // What is connected, against what the table of the pass type says of the port.
+    void checkInput(const PortInfo& port) {
+        const Desc& desc = node_.inputs[port.name].desc;
+        const bool texture = desc.kind < ResourceKind::Buffer;
+        if (texture && formatInfo(desc.format).channels < port.content.channels)
+            note(port.name,
+                 fmt::format("is {}, of which {} channels are read", describe(desc), port.content.channels));
+        if (port.sameExtentAs.empty() || !node_.inputs.connected(port.sameExtentAs)) return;
+        const Desc& other = node_.inputs[port.sameExtentAs].desc;
+        if (desc.extent != other.extent || desc.view.source != other.view.source)
+            note(port.name,
+                 fmt::format("is {} but {} is {}", describe(desc), port.sameExtentAs, describe(other)));
+    }
+
     void checkOutput(const Output& output) {
         const PortInfo* info = known(output.port, "declares the output");
         if (info == nullptr) return;
@@ -82,6 +98,12 @@ private:
                                           describe(output.desc)));
             return;
         }
+        if (kind < ResourceKind::Buffer && output.same.empty() &&
+            formatInfo(output.desc.format).channels < info->content.channels)
+            note(output.port, fmt::format("is to have {} channels, but is {}", info->content.channels,
+                                          describe(output.desc)));
+        if (info->kind == PortKind::Layers && output.same.empty() && output.desc.depthLayers.count < 1)
+            note(output.port, "does not say how many depth layers a texel holds");
         if (isModule(info->kind) && output.same.empty() && findModule(declaration_, output.port) == nullptr)
             note(output.port, "no module file is declared for it");
         if (!isModule(info->kind)) checkSize(output);

@@ -2,53 +2,50 @@
 #include "graph/report.h"
 #include "graph/value_text.h"
 #include <fmt/format.h>
-#include <set>
+#include <map>
 
 namespace kestrel {
 namespace {
 
-// What an edge of this kind looks like: modules stand out.
-std::string edgeStyle(const Graph& graph, const Registry& registry, const GraphEdge& edge, bool faded) {
+bool isModuleEdge(const Graph& graph, const Registry& registry, const GraphEdge& edge) {
     const GraphPass* producer = graph.find(edge.from.pass);
     const PassType* type = producer == nullptr ? nullptr : registry.find(producer->type);
     const PortInfo* port = type == nullptr ? nullptr : type->port(edge.from.port);
-    const bool module = port != nullptr && isModule(port->kind);
-    return fmt::format("label={}, color={}, fontcolor={}{}", jsonText(edge.from.port + " > " + edge.to.port),
-                       faded    ? "gray75"
-                       : module ? "blue3"
-                                : "black",
-                       faded ? "gray75" : "black", module ? ", style=bold" : "");
+    return port != nullptr && isModule(port->kind);
 }
 
 } // namespace
 
-std::string dotText(const Graph& graph, const Registry& registry, const Plan& plan) {
-    std::set<std::string> running;
-    for (const PlanPass& pass : plan.passes) running.insert(pass.name);
-    std::string text =
-        fmt::format("digraph {} {{\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n"
-                    "  edge [fontname=\"sans-serif\", fontsize=10];\n",
-                    jsonText(graph.name.empty() ? std::string("graph") : graph.name));
+std::string dotText(const Graph& graph, const Registry& registry, const Plan* plan) {
+    std::map<std::string, std::string> why; // of the passes that are left out
+    if (plan != nullptr)
+        for (const LeftOut& left : plan->leftOut)
+            if (graph.find(left.what) != nullptr) why.emplace(left.what, left.why);
+    std::string text = fmt::format(
+        "digraph {} {{\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n"
+        "  edge [fontname=\"sans-serif\", fontsize=10];\n",
+        jsonText(graph.name.empty() ? std::string("graph") : graph.name));
     for (const GraphPass& pass : graph.passes) {
-        std::string why;
-        for (const LeftOut& left : plan.leftOut)
-            if (left.what == pass.name) why = left.why;
-        text +=
-            fmt::format("  {} [label={}{}];\n", jsonText(pass.name), jsonText(pass.name + "\n" + pass.type),
-                        running.contains(pass.name)
-                            ? std::string()
-                            : fmt::format(", style=dashed, color=gray75, fontcolor=gray60, tooltip={}",
-                                          jsonText("left out: " + why)));
+        const std::string label = jsonText(pass.name + "\n" + pass.type);
+        const auto left = why.find(pass.name);
+        text += left == why.end()
+                    ? fmt::format("  {} [label={}];\n", jsonText(pass.name), label)
+                    : fmt::format("  {} [label={}, color=gray70, fontcolor=gray70, "
+                                  "style=\"rounded,dashed\", tooltip={}];\n",
+                                  jsonText(pass.name), label, jsonText("left out: " + left->second));
     }
     for (const GraphEdge& edge : graph.edges) {
-        const bool faded = !running.contains(edge.from.pass) || !running.contains(edge.to.pass);
-        text += fmt::format("  {} -> {} [{}];\n", jsonText(edge.from.pass), jsonText(edge.to.pass),
-                            edgeStyle(graph, registry, edge, faded));
+        const std::string label =
+            edge.from.port == edge.to.port ? edge.from.port : edge.from.port + " → " + edge.to.port;
+        const bool faded = why.contains(edge.from.pass) || why.contains(edge.to.pass);
+        text += fmt::format("  {} -> {} [label={}{}{}];\n", jsonText(edge.from.pass), jsonText(edge.to.pass),
+                            jsonText(label), isModuleEdge(graph, registry, edge) ? ", style=bold" : "",
+                            faded ? ", color=gray70, fontcolor=gray70" : "");
     }
     for (const GraphOutput& output : graph.outputs) {
-        const std::string name = "output " + output.port.text();
-        text += fmt::format("  {} [label={}, shape=plaintext];\n  {} -> {};\n", jsonText(name),
-                            jsonText(output.port.port), jsonText(output.port.pass), jsonText(name));
+        const std::string name = jsonText("output " + output.port.text());
+        text += fmt::format("  {} [label={}, shape=note];\n  {} -> {};\n", name, jsonText(output.port.port),
+                            jsonText(output.port.pass), name);
     }
     return text + "}\n";
 }

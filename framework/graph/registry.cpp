@@ -130,7 +130,16 @@ void Registry::check(const PassType& type, std::vector<Problem> problems) {
         if (!names.insert(name).second)
             note(fmt::format("'{}' occurs twice among its ports and properties", name));
     };
-    for (const PortInfo& port : type.ports) noteName(port.name, "port");
+    for (const PortInfo& port : type.ports) {
+        noteName(port.name, "port");
+        if (port.sameExtentAs.empty()) continue;
+        const PortInfo* other = type.port(port.sameExtentAs);
+        if (port.direction != PortDirection::Input || other == nullptr ||
+            other->direction != PortDirection::Input || isModule(port.kind) || isModule(other->kind))
+            note(fmt::format(
+                "'{}' cannot have the extent of '{}': both must be textures or buffers that are read",
+                port.name, port.sameExtentAs));
+    }
     for (const PropertyInfo& property : type.properties) {
         noteName(property.name, "property");
         if (const auto mistake = valueMistake(property, property.defaultValue))

@@ -2,6 +2,7 @@
 // documentation take ports and properties.
 #pragma once
 #include "core/error.h"
+#include "graph/content.h"
 #include "graph/pass.h"
 #include <functional>
 #include <limits>
@@ -19,7 +20,10 @@ struct PortInfo {
     PortDirection direction = PortDirection::Input;
     bool optional = false; // of an input
     std::string description;
-    bool display = false; // an output that holds display-referred values: written to 8-bit files as it is
+    Content content;
+    // An input of the same pass whose extent and camera this input must share; empty: none. Held where both
+    // are connected.
+    std::string sameExtentAs;
     // The range of an output's values, where it is known; `render --check-finite` holds them against it.
     double minimum = -std::numeric_limits<double>::infinity(),
            maximum = std::numeric_limits<double>::infinity();
@@ -113,7 +117,16 @@ public:
     // A texture with display-referred values (sRGB code values).
     Describe& displayOutput(std::string name, std::string description) {
         port(std::move(name), PortKind::Texture, PortDirection::Output, false, std::move(description));
-        type_.ports.back().display = true;
+        return carries({.channels = 3, .space = Space::Display});
+    }
+    // What the port described last carries.
+    Describe& carries(Content content) {
+        type_.ports.back().content = std::move(content);
+        return *this;
+    }
+    // The input described last must have the extent and the camera of this one.
+    Describe& sameExtentAs(std::string input) {
+        type_.ports.back().sameExtentAs = std::move(input);
         return *this;
     }
     // The values of the port described last lie within [minimum, maximum].
@@ -220,7 +233,7 @@ public:
 private:
     Describe& port(std::string name, PortKind kind, PortDirection direction, bool optional,
                    std::string description) {
-        type_.ports.push_back({std::move(name), kind, direction, optional, std::move(description), false});
+        type_.ports.push_back({std::move(name), kind, direction, optional, std::move(description), {}, {}});
         return *this;
     }
     Describe& property(PropertyInfo info) {

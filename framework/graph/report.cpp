@@ -17,11 +17,6 @@ std::string programName(const ProgramRequest& program) {
     return fmt::format("{}", fmt::join(program.files, "+"));
 }
 
-// "16 384 bytes" is hard to read and "16 KiB" hard to add up: both.
-std::string exactBytesText(std::uint64_t bytes) {
-    return fmt::format("{} bytes ({:.2f} MiB)", bytes, static_cast<double>(bytes) / (1 << 20));
-}
-
 std::string stepText(const Plan& plan, const PlanStep& step) {
     std::string text = "    " + step.step.name;
     if (step.program >= 0)
@@ -49,8 +44,9 @@ Out moduleJson(const ModuleInstance& instance) {
     return json;
 }
 
-Out stepJson(const PlanStep& step) {
-    Out json = {{"name", step.step.name},
+Out stepJson(const Plan& plan, const PlanStep& step) {
+    Out json = {{"pass", plan.passes[static_cast<size_t>(step.pass)].name},
+                {"name", step.step.name},
                 {"group", step.step.group},
                 {"barrier", barrierText(step.barrier)},
                 {"program", step.program}};
@@ -75,10 +71,22 @@ Out stepJson(const PlanStep& step) {
 
 } // namespace
 
+std::string memoryText(const MemoryReport& memory) {
+    return fmt::format("{} shared by lifetime (unshared {}), {} that stays", bytesText(memory.transient),
+                       bytesText(memory.unshared), bytesText(memory.persistent));
+}
+
+std::string leftOutText(const std::vector<LeftOut>& leftOut) {
+    std::string text;
+    for (const LeftOut& left : leftOut)
+        text += fmt::format("left out: {}, because {}\n", left.what, left.why);
+    return leftOut.empty() ? "left out: nothing\n" : text;
+}
+
 std::string planText(const Plan& plan) {
     std::string text =
-        fmt::format("Order at {}x{} ({} passes, {} steps, {} programs):\n", plan.size.width, plan.size.height,
-                    plan.passes.size(), plan.steps.size(), plan.programs.size());
+        fmt::format("size: {}x{}\norder: {} passes, {} steps, {} programs\n", plan.size.width,
+                    plan.size.height, plan.passes.size(), plan.steps.size(), plan.programs.size());
     for (const PlanPass& pass : plan.passes) {
         text += fmt::format("  {} ({}){}\n", pass.name, pass.type,
                             pass.stepCount == 0 ? ": provides modules, runs nothing"
@@ -87,8 +95,7 @@ std::string planText(const Plan& plan) {
         for (int i = 0; i < pass.stepCount; ++i)
             text += stepText(plan, plan.steps[static_cast<size_t>(pass.firstStep + i)]);
     }
-
-    text += "Memory:\n";
+    text += fmt::format("resources: {} in {} objects\n", plan.resources.size(), plan.objects.size());
     for (size_t i = 0; i < plan.objects.size(); ++i) {
         const PlanObject& object = plan.objects[i];
         text +=
@@ -97,14 +104,7 @@ std::string planText(const Plan& plan) {
             if (resource.object == static_cast<int>(i))
                 text += fmt::format("    {}: {}\n", resource.port.text(), resourceUseText(resource));
     }
-    text += fmt::format("  transient {}, without sharing {}; persistent {}\n",
-                        exactBytesText(plan.memory.transient), exactBytesText(plan.memory.unshared),
-                        exactBytesText(plan.memory.persistent));
-
-    text += "Left out:\n";
-    if (plan.leftOut.empty()) text += "  nothing\n";
-    for (const LeftOut& left : plan.leftOut) text += fmt::format("  {}: {}\n", left.what, left.why);
-    return text;
+    return text + fmt::format("memory: {}\n", memoryText(plan.memory)) + leftOutText(plan.leftOut);
 }
 
 std::string planJson(const Plan& plan) {
@@ -114,7 +114,7 @@ std::string planJson(const Plan& plan) {
     for (const PlanPass& pass : plan.passes) {
         Out steps = Out::array();
         for (int i = 0; i < pass.stepCount; ++i)
-            steps.push_back(stepJson(plan.steps[static_cast<size_t>(pass.firstStep + i)]));
+            steps.push_back(plan.steps[static_cast<size_t>(pass.firstStep + i)].step.name);
         json["passes"].push_back({{"name", pass.name},
                                   {"type", pass.type},
                                   {"every_frame", pass.everyFrame},
@@ -122,10 +122,12 @@ std::string planJson(const Plan& plan) {
                                   {"ports", pass.ports},
                                   {"steps", std::move(steps)}});
     }
+    json["steps"] = Out::array();
+    for (const PlanStep& step : plan.steps) json["steps"].push_back(stepJson(plan, step));
     json["resources"] = Out::array();
     for (const PlanResource& resource : plan.resources)
         json["resources"].push_back({{"port", resource.port.text()},
-                                     {"desc", describe(resource.desc)},
+                                     {"description", describe(resource.desc)},
                                      {"bytes", resource.desc.totalBytes()},
                                      {"transient", resource.transient},
                                      {"constant", resource.constant.has_value()},
@@ -136,8 +138,9 @@ std::string planJson(const Plan& plan) {
                                      {"last_step", resource.lastStep}});
     json["objects"] = Out::array();
     for (const PlanObject& object : plan.objects)
-        json["objects"].push_back(
-            {{"desc", describe(object.desc)}, {"bytes", object.desc.totalBytes()}, {"label", object.label}});
+        json["objects"].push_back({{"description", describe(object.desc)},
+                                   {"bytes", object.desc.totalBytes()},
+                                   {"label", object.label}});
     json["programs"] = Out::array();
     for (const ProgramRequest& program : plan.programs) {
         Out modules = Out::object();
@@ -155,7 +158,7 @@ std::string planJson(const Plan& plan) {
     json["memory"] = {{"transient", plan.memory.transient},
                       {"unshared", plan.memory.unshared},
                       {"persistent", plan.memory.persistent}};
-    return json.dump(2) + "\n";
+    return json.dump(2, ' ', false, Out::error_handler_t::replace) + "\n";
 }
 
 } // namespace kestrel

@@ -37,6 +37,37 @@ Out propertyJson(const PropertyInfo& property) {
     return json;
 }
 
+// "texture, optional, 3 channels, render space, extent of depth".
+std::string portFacts(const PortInfo& port) {
+    std::string text(portKindName(port.kind));
+    if (port.optional) text += ", optional";
+    if (const std::string carried = describe(port.content); !carried.empty()) text += ", " + carried;
+    if (!port.sameExtentAs.empty()) text += ", extent of " + port.sameExtentAs;
+    return text;
+}
+
+// What is stated of a port; keys that are not say nothing.
+Out portJson(const PortInfo& port) {
+    Out json = {{"name", port.name},
+                {"kind", portKindName(port.kind)},
+                {"direction", directionName(port.direction)},
+                {"optional", port.optional},
+                {"description", port.description}};
+    if (!port.content.structure.empty()) json["structure"] = port.content.structure;
+    if (port.content.channels > 0) json["channels"] = port.content.channels;
+    if (port.content.space != Space::Any) json["space"] = spaceName(port.content.space);
+    if (!port.sameExtentAs.empty()) json["same_extent_as"] = port.sameExtentAs;
+    if (std::isfinite(port.minimum)) json["minimum"] = number(port.minimum);
+    if (std::isfinite(port.maximum)) json["maximum"] = number(port.maximum);
+    return json;
+}
+
+Out portsJson(const PassType& type) {
+    Out ports = Out::array();
+    for (const PortInfo& port : type.ports) ports.push_back(portJson(port));
+    return ports;
+}
+
 std::string rangeText(const PropertyInfo& property) {
     if (property.kind == PropertyKind::Choice) return fmt::format("{}", fmt::join(property.choices, " | "));
     const bool below = std::isfinite(property.minimum), above = std::isfinite(property.maximum);
@@ -90,7 +121,12 @@ Out propertiesSchema(const PassType& type) {
         schema["default"] = defaultOf(property);
         properties[property.name] = std::move(schema);
     }
-    return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+    // "ports" is an annotation, for editors of graph files: what can be joined to what.
+    return {{"type", "object"},
+            {"description", type.description},
+            {"properties", std::move(properties)},
+            {"additionalProperties", false},
+            {"ports", portsJson(type)}};
 }
 
 Out passSchema(const Registry& registry) {
@@ -129,9 +165,8 @@ std::string passTypeText(const PassType& type) {
          {PortDirection::Input, PortDirection::Output, PortDirection::Internal})
         for (const PortInfo& port : type.ports)
             if (port.direction == direction)
-                text +=
-                    fmt::format("  {} {} ({}{}): {}\n", directionName(direction), port.name,
-                                portKindName(port.kind), port.optional ? ", optional" : "", port.description);
+                text += fmt::format("  {} {} ({}): {}\n", directionName(direction), port.name,
+                                    portFacts(port), port.description);
     for (const PropertyInfo& property : type.properties)
         text += fmt::format("  property {} = {} ({}): {}\n", property.name, jsonText(property.defaultValue),
                             rangeText(property), property.description);
@@ -142,19 +177,12 @@ std::string passesJson(const std::vector<const PassType*>& types) {
     Out passes = Out::array();
     for (const PassType* each : types) {
         const PassType& type = *each;
-        Out ports = Out::array();
-        for (const PortInfo& port : type.ports)
-            ports.push_back({{"name", port.name},
-                             {"kind", portKindName(port.kind)},
-                             {"direction", directionName(port.direction)},
-                             {"optional", port.optional},
-                             {"description", port.description}});
         Out properties = Out::array();
         for (const PropertyInfo& property : type.properties) properties.push_back(propertyJson(property));
         passes.push_back({{"name", type.name},
                           {"description", type.description},
                           {"plugin", type.plugin},
-                          {"ports", std::move(ports)},
+                          {"ports", portsJson(type)},
                           {"properties", std::move(properties)}});
     }
     return Out{{"passes", std::move(passes)}}.dump(2, ' ', false, Out::error_handler_t::replace) + "\n";

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <limits>
 
 namespace kestrel {
 std::string bytesText(std::uint64_t bytes) {
@@ -25,6 +26,17 @@ std::string_view accessName(Access access) {
     constexpr std::array<std::string_view, 9> names = {
         "fetch", "image", "storage", "uniform", "attachment", "vertex", "indirect", "copy", "host"};
     return names.at(static_cast<size_t>(access));
+}
+
+Capabilities Capabilities::unlimited() {
+    Capabilities all;
+    constexpr int most = std::numeric_limits<int>::max();
+    all.maxComputeImages = all.maxStorageBlocks = all.maxTextureUnits = all.maxUniformBlocks = most;
+    all.maxTextureSize = all.max3DTextureSize = all.maxArrayLayers = most;
+    all.maxComputeSharedBytes = all.maxComputeInvocations = most;
+    all.maxTextureBufferTexels = all.maxStorageBlockBytes = std::numeric_limits<std::int64_t>::max();
+    all.everyExtension = true;
+    return all;
 }
 
 Desc Desc::texture2D(Format format, Extent extent, View view) {
@@ -65,6 +77,13 @@ Desc Desc::module(Bits provides, Bits required) {
     desc.kind = ResourceKind::Module;
     desc.provides = provides;
     desc.required = required;
+    return desc;
+}
+
+Desc Desc::layersModule(const DepthLayers& layers, const View& view) {
+    Desc desc = module(0);
+    desc.depthLayers = layers;
+    desc.view = view;
     return desc;
 }
 
@@ -143,7 +162,10 @@ std::string describe(const Desc& desc) {
     const Extent& e = desc.extent;
     switch (desc.kind) {
     case ResourceKind::Module:
-        return "module";
+        if (desc.depthLayers.count == 0) return "module";
+        return fmt::format("module of {} depth layer{}{}", desc.depthLayers.count,
+                           desc.depthLayers.count == 1 ? "" : "s",
+                           desc.depthLayers.ordered ? " in order" : "");
     case ResourceKind::Buffer:
         return desc.format == Format::None ? fmt::format("buffer {}", bytesText(desc.bytes))
                                            : fmt::format("{} buffer {}", format, bytesText(desc.bytes));

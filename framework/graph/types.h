@@ -140,6 +140,15 @@ inline constexpr Bits Surface =
     1 << 0; // normal and material: consumers request requests::Surface of their tracer
 } // namespace required
 
+// What a `layers` module (shaders/lib/layers.glsl) tells its consumers at declaration; Desc::view says from
+// where its samples were taken: divisor, guard band, jitter.
+struct DepthLayers {
+    int count = 0;        // depth samples that a texel holds at most (K)
+    bool linear = true;   // stored as distance along the view axis, else as the rasterizer's depth
+    bool ordered = false; // nearest first; otherwise in any order
+    friend bool operator==(const DepthLayers&, const DepthLayers&) = default;
+};
+
 // Describes what stands behind a port.
 struct Desc {
     ResourceKind kind = ResourceKind::Texture2D;
@@ -148,8 +157,9 @@ struct Desc {
     int mips = 1;
     std::uint64_t bytes = 0; // of a buffer
     View view;
-    Bits provides = 0; // of a module
-    Bits required = 0; // of a radiance module: of the hits that it is asked about
+    Bits provides = 0;       // of a module
+    Bits required = 0;       // of a radiance module: of the hits that it is asked about
+    DepthLayers depthLayers; // of a layers module
     friend bool operator==(const Desc&, const Desc&) = default;
 
     static Desc texture2D(Format format, Extent extent, View view = {});
@@ -157,6 +167,7 @@ struct Desc {
     static Desc array2D(Format format, Extent extent);
     static Desc buffer(std::uint64_t bytes, Format texel = Format::None);
     static Desc module(Bits provides, Bits required = 0);
+    static Desc layersModule(const DepthLayers& layers, const View& view);
     // Bytes of all mips and layers.
     [[nodiscard]] std::uint64_t totalBytes() const;
     // Layers of level `mip`: of an array, slices of a volume, 6 of a cube, else 1.
@@ -179,7 +190,12 @@ struct Capabilities {
     std::int64_t maxTextureBufferTexels = 65536;
     std::int64_t maxStorageBlockBytes = std::int64_t{1} << 27;
     bool software = false; // a CPU renderer: timer queries do not measure the work
-    [[nodiscard]] bool has(const std::string& extension) const { return extensions.contains(extension); }
+    bool everyExtension = false;
+    [[nodiscard]] bool has(const std::string& extension) const {
+        return everyExtension || extensions.contains(extension);
+    }
+    // No device has less: for drawing and judging a graph where no device limits it.
+    static Capabilities unlimited();
 };
 
 } // namespace kestrel

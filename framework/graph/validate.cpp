@@ -100,14 +100,22 @@ private:
         const auto place = [&](const Location& end) { return end.line > 0 ? end : edge.where; };
         const PortInfo* from = port(edge.from, PortDirection::Output, place(edge.fromWhere));
         const PortInfo* to = port(edge.to, PortDirection::Input, place(edge.toWhere));
-        if (from != nullptr && to != nullptr && from->kind != to->kind)
-            note(edge.where, fmt::format("a {} cannot feed a {} port: '{}' -> '{}'", portKindName(from->kind),
-                                         portKindName(to->kind), edge.from.text(), edge.to.text()));
+        if (from != nullptr && to != nullptr) checkFit(edge, *from, *to);
         if (from != nullptr && to != nullptr) sound_.push_back(&edge);
         const auto [first, fresh] = feeds_.try_emplace(edge.to, &edge);
         if (!fresh)
             note(edge.where, fmt::format("the input '{}' is connected twice ('{}' feeds it already)",
                                          edge.to.text(), first->second->from.text()));
+    }
+
+    void checkFit(const GraphEdge& edge, const PortInfo& from, const PortInfo& to) {
+        if (from.kind != to.kind) {
+            note(edge.where, fmt::format("a {} cannot feed a {} port: '{}' -> '{}'", portKindName(from.kind),
+                                         portKindName(to.kind), edge.from.text(), edge.to.text()));
+        } else if (const std::string mistake = contentMistake(from.content, to.content); !mistake.empty()) {
+            note(edge.where, fmt::format("'{}' cannot feed '{}': it carries {}", edge.from.text(),
+                                         edge.to.text(), mistake));
+        }
     }
 
     void checkRequiredInputs() {

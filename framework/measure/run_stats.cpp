@@ -74,9 +74,4 @@ std::string statsJson(const RunStats& stats) {
     return json.dump(2, ' ', false, OutJson::error_handler_t::replace) + "\n";
 }
 
-std::string memoryText(const MemoryReport& memory) {
-    return fmt::format("{} shared by lifetime (unshared {}), {} that stays", bytesText(memory.transient),
-                       bytesText(memory.unshared), bytesText(memory.persistent));
-}
-
 } // namespace kestrel

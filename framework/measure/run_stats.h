@@ -32,7 +32,4 @@ RunStats gatherStats(Renderer& renderer, const Profile& profile, const std::stri
 // The JSON text, indented, with a line break at the end.
 std::string statsJson(const RunStats& stats);
 
-// For people: "1.5 MiB", and what a plan needs, in one line.
-std::string memoryText(const MemoryReport& memory);
-
 } // namespace kestrel

@@ -1,7 +1,6 @@
 #include "ray_ambient_occlusion.h"
 #include "draw/ray_steps.h"
 #include "execute/commands.h"
-#include <fmt/format.h>
 
 namespace kestrel {
 
@@ -9,13 +8,18 @@ PassType RayAmbientOcclusion::type() {
     return Describe<RayAmbientOcclusion>("RayAmbientOcclusion",
                                          "Ambient occlusion by rays through any tracer")
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
         .input("tracer", PortKind::Tracer, "Who answers the visibility queries")
         .output("visibility", PortKind::Texture,
                 "Share of the cosine-weighted hemisphere that is open; 1 where nothing is")
+        .carries({.channels = 1})
         .output("weight", PortKind::Texture,
                 "How much this frame's visibility counts in a mean over frames (for snapping tracers); 1 "
                 "where nothing is")
+        .carries({.channels = 1})
         .number("rays", &RayAmbientOcclusion::rays, 1, 256, "rays", "Rays a pixel and frame")
         .number("distance", &RayAmbientOcclusion::distance, 0, 1e9, "scene units",
                 "How far occluders count; 0: any distance")
@@ -29,10 +33,6 @@ Declaration RayAmbientOcclusion::declare(const World& world, const Inputs& input
                                          const Demand& demand) const {
     Declaration declaration;
     const Desc& depth = inputs["depth"].desc;
-    if (inputs["normal"].desc.extent != depth.extent)
-        declaration.problems.push_back(
-            {"normal",
-             fmt::format("is {} but depth is {}", describe(inputs["normal"].desc), describe(depth))});
     const bool snaps =
         snap && (inputs["tracer"].desc.provides & (provides::Snaps | provides::AlwaysSnaps)) != 0;
     const bool background = inputs["depth"].constant == glm::vec4(0);

@@ -37,7 +37,7 @@ Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& de
     const auto limit = static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
     if (std::max(texels, nodeBytes(triangles) / texelBytes) > limit)
         declaration.problems.push_back(
-            {"", "the scene needs more texels in a buffer texture than this device has"});
+            {"", "the scene needs more texels in a buffer texture than this device has", true});
 
     declaration.outputs.push_back(
         {.port = "nodes", .desc = Desc::buffer(nodeBytes(triangles), Format::RGBA32UI)});

@@ -37,7 +37,9 @@ PassType DebugView::type() {
     return Describe<DebugView>("DebugView", "Makes any texture visible, or a slice of an occupancy map")
         .optionalInput("source", PortKind::Texture, "What is looked at")
         .optionalInput("occupancy", PortKind::Buffer, "Or an occupancy map, with its grid")
+        .carries(content::elements("OccupancyWord"))
         .optionalInput("grid", PortKind::Buffer, "Where the cells of the occupancy map lie")
+        .carries(content::elements("OccupancyGrid"))
         .displayOutput("image", "What is seen, as display values")
         .choice("show", &DebugView::show, {"colour", "red", "green", "blue", "alpha", "normal", "heat_map"},
                 "Which channels, and how; normal maps -1..1 to 0..1")

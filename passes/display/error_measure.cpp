@@ -3,7 +3,6 @@
 #include "image/colormap.h"
 #include "image/error_figures.h"
 #include <algorithm>
-#include <fmt/format.h>
 
 namespace kestrel {
 namespace {
@@ -27,9 +26,12 @@ PassType ErrorMeasure::type() {
                "ErrorMeasure",
                "Measures an image against another: MSE, PSNR, SSIM, FLIP, and the FLIP heat map")
         .input("reference", PortKind::Texture, "What is right")
+        .sameExtentAs("test")
         .input("test", PortKind::Texture, "What is measured")
         .optionalInput("mask", PortKind::Texture,
                        "Pixels above 0 count (coverage, view-space depth); without it all do")
+        .carries({.channels = 1})
+        .sameExtentAs("test")
         .displayOutput("heat_map", "FLIP error in the published colour map")
         .number("interval", &ErrorMeasure::interval, 1, 1e6, "frames",
                 "Measures every so many frames; comparing takes the CPU longer than a frame")
@@ -40,10 +42,6 @@ PassType ErrorMeasure::type() {
 Declaration ErrorMeasure::declare(const World&, const Inputs& inputs, const Demand&) const {
     Declaration declaration;
     const Desc& test = inputs["test"].desc;
-    for (const char* port : {"reference", "mask"})
-        if (inputs.connected(port) && inputs[port].desc.extent != test.extent)
-            declaration.problems.push_back(
-                {port, fmt::format("is {} but test is {}", describe(inputs[port].desc), describe(test))});
     declaration.outputs.push_back(
         {.port = "heat_map", .desc = Desc::texture2D(Format::RGBA8, test.extent, test.view)});
     declaration.outputs.back().clear = glm::vec4(0);

@@ -45,7 +45,9 @@ PassType DistanceField::type() {
     return Describe<DistanceField>("DistanceField",
                                    "Distances to the occupied cells of a map, traced by spheres")
         .input("occupancy", PortKind::Buffer, "Base occupancy map")
+        .carries(content::elements("OccupancyWord"))
         .input("grid", PortKind::Buffer, "Where its cells lie")
+        .carries(content::elements("OccupancyGrid"))
         .output("tracer", PortKind::Tracer, "Sphere-traces the field")
         .internal("field", PortKind::Texture, "Distance to the nearest occupied cell's centre, in cells")
         .internal("seeds_a", PortKind::Texture, "Nearest known seeds of jump flooding, every other round")

@@ -24,6 +24,8 @@ PassType Accumulate::type() {
         .input("signal", PortKind::Texture, "What is averaged")
         .optionalInput("weight", PortKind::Texture,
                        "How much each pixel of this frame counts; without it all count alike")
+        .carries({.channels = 1})
+        .sameExtentAs("signal")
         .output("result", PortKind::Texture, "The mean")
         .internal("total", PortKind::Texture, "Sum of the weights")
         .number("maximum", &Accumulate::maximum, 0, 1e6, "frames",
@@ -57,10 +59,6 @@ Declaration Accumulate::declare(const World&, const Inputs& inputs, const Demand
                        {.port = "result", .access = Access::Image, .write = true}},
               .group = "accumulation"};
     if (weighted) {
-        if (inputs["weight"].desc.extent != signal.desc.extent)
-            declaration.problems.push_back(
-                {"weight", fmt::format("is {} but signal is {}", describe(inputs["weight"].desc),
-                                       describe(signal.desc))});
         step.defines.emplace("WEIGHTED", "1");
         step.defines["WEIGHT_FORMAT"] = std::string(formatInfo(inputs["weight"].desc.format).name);
         step.uses.push_back({.port = "weight", .access = Access::Image});

@@ -8,6 +8,8 @@ PassType BilateralBlur::type() {
     return Describe<BilateralBlur>("BilateralBlur", "Separable blur that stops at edges of depth")
         .input("signal", PortKind::Texture, "What is blurred")
         .input("view_depth", PortKind::Texture, "Distance along the view axis; 0 where nothing is")
+        .carries(content::viewDepth)
+        .sameExtentAs("signal")
         .output("result", PortKind::Texture, "The blurred signal; as it was where nothing is")
         .internal("blurred_x", PortKind::Texture, "Blurred along x")
         .number("radius", &BilateralBlur::radius, 0, 32, "pixels",
@@ -25,10 +27,6 @@ Declaration BilateralBlur::declare(const World&, const Inputs& inputs, const Dem
     if (format.integer || format.depth)
         declaration.problems.push_back(
             {"signal", fmt::format("cannot be blurred: it is {}", describe(signal.desc))});
-    if (inputs["view_depth"].desc.extent != signal.desc.extent)
-        declaration.problems.push_back(
-            {"view_depth", fmt::format("is {} but signal is {}", describe(inputs["view_depth"].desc),
-                                       describe(signal.desc))});
     Output result{.port = "result", .desc = signal.desc};
     if (signal.constant || radius == 0 || inputs["view_depth"].constant) {
         // A constant stays itself, and a radius of 0 changes nothing: the result is the signal, without a

@@ -56,19 +56,29 @@ PassType SpatiotemporalFilter::type() {
                "Follows a noisy signal over frames and smooths it in space, guided by its variance (SVGF)")
         .input("signal", PortKind::Texture, "What is filtered: visibility, diffuse or specular light")
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .carries(content::depth)
+        .sameExtentAs("signal")
         .input("normal", PortKind::Texture, "Their normals, render space; 0 where nothing is")
+        .carries(content::normal)
+        .sameExtentAs("signal")
         .optionalInput(
             "motion", PortKind::Texture,
             "From each pixel to where its surface was in the last frame, in pixels; without it everything "
             "stays where it is")
+        .carries(content::motion)
+        .sameExtentAs("signal")
         .optionalInput("weight", PortKind::Texture,
                        "How much each pixel of this frame counts; without it all count alike")
+        .carries({.channels = 1})
+        .sameExtentAs("signal")
         .output("result", PortKind::Texture, "The filtered signal; as it was where nothing is")
         .output("history_length", PortKind::Texture, "Frames in each pixel's mean; 0 where nothing is")
+        .carries({.channels = 1})
         .output("variance", PortKind::Texture,
                 "Estimated variance that guides the smoothing in space: of the mean over frames; of one "
                 "frame where the "
                 "history is a filtered one")
+        .carries({.channels = 1})
         .internal("integrated", PortKind::Texture, "Mean over frames, before it is smoothed in space")
         .internal("smoothed_once", PortKind::Texture,
                   "First iteration's result, where the history is a filtered one")
@@ -111,11 +121,6 @@ Declaration SpatiotemporalFilter::declare(const World& world, const Inputs& inpu
         declaration.problems.push_back(
             {"signal", fmt::format("cannot be filtered: it is {}; one channel or colour is needed",
                                    describe(signal.desc))});
-    for (const char* port : {"depth", "normal", "motion", "weight"})
-        if (inputs.connected(port) && inputs[port].desc.extent != signal.desc.extent)
-            declaration.problems.push_back(
-                {port,
-                 fmt::format("is {} but signal is {}", describe(inputs[port].desc), describe(signal.desc))});
 
     Choices choices;
     choices.oneChannel = format.channels == 1;

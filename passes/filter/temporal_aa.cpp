@@ -11,10 +11,14 @@ PassType TemporalAa::type() {
         .input("colour", PortKind::Texture,
                "What is anti-aliased: one sample a pixel, at the jittered position")
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .carries(content::depth)
+        .sameExtentAs("colour")
         .optionalInput(
             "motion", PortKind::Texture,
             "From each pixel to where its surface was in the last frame, in pixels; without it everything "
             "stays where it is")
+        .carries(content::motion)
+        .sameExtentAs("colour")
         .output("result", PortKind::Texture, "The anti-aliased picture")
         .internal("past", PortKind::Texture,
                   "Depth, frames without motion or change of depth, frames in the mean")
@@ -38,11 +42,6 @@ Declaration TemporalAa::declare(const World&, const Inputs& inputs, const Demand
         declaration.problems.push_back(
             {"colour", fmt::format("cannot be anti-aliased: it is {}; one channel or colour is needed",
                                    describe(colour.desc))});
-    for (const char* port : {"depth", "motion"})
-        if (inputs.connected(port) && inputs[port].desc.extent != colour.desc.extent)
-            declaration.problems.push_back(
-                {port,
-                 fmt::format("is {} but colour is {}", describe(inputs[port].desc), describe(colour.desc))});
 
     // On the grid without jitter: whoever reads the result reads it with the unjittered view.
     View view = colour.desc.view;

@@ -10,23 +10,27 @@ struct Target {
     const char* port;
     const char* define;
     Format format;
+    Content content;
     const char* description;
 };
 
-constexpr Target targets[] = {
-    {"view_depth", "OUT_VIEW_DEPTH", Format::R32F,
+const Target targets[] = {
+    {"view_depth", "OUT_VIEW_DEPTH", Format::R32F, content::viewDepth,
      "Distance along the view axis in scene units; 0 where nothing is"},
-    {"normal", "OUT_NORMAL", Format::RGBA16F,
+    {"normal", "OUT_NORMAL", Format::RGBA16F, content::normal,
      "Shading normal, unit, towards the eye, render space; 0 where nothing is"},
-    {"face_normal", "OUT_FACE_NORMAL", Format::RGBA16F,
+    {"face_normal", "OUT_FACE_NORMAL", Format::RGBA16F, content::normal,
      "Normal of the triangle, unit, towards the eye, render space"},
-    {"position", "OUT_POSITION", Format::RGBA32F, "Render-space position; w is 1 where there is geometry"},
-    {"albedo", "OUT_ALBEDO", Format::RGBA16F, "Linear base colour; a is 1 where there is geometry"},
-    {"material", "OUT_MATERIAL", Format::RGBA8, "Roughness, metallic, and in z whether the surface is unlit"},
-    {"emission", "OUT_EMISSION", Format::RGBA16F, "Linear emitted radiance"},
-    {"motion", "OUT_MOTION", Format::RG32F,
+    {"position", "OUT_POSITION", Format::RGBA32F, content::position,
+     "Render-space position; w is 1 where there is geometry"},
+    {"albedo", "OUT_ALBEDO", Format::RGBA16F, content::colour,
+     "Linear base colour; a is 1 where there is geometry"},
+    {"material", "OUT_MATERIAL", Format::RGBA8, content::material,
+     "Roughness, metallic, and in z whether the surface is unlit"},
+    {"emission", "OUT_EMISSION", Format::RGBA16F, content::colour, "Linear emitted radiance"},
+    {"motion", "OUT_MOTION", Format::RG32F, content::motion,
      "From this pixel to where its surface was in the last frame, in pixels"},
-    {"coverage", "OUT_COVERAGE", Format::R8, "1 where there is geometry, else 0"},
+    {"coverage", "OUT_COVERAGE", Format::R8, {.channels = 1}, "1 where there is geometry, else 0"},
 };
 
 // Colour attachments that OpenGL 4.6 guarantees; further targets take a second step over the finished depth.
@@ -59,9 +63,12 @@ bool isConstantZero(const Target& target, const SceneFacts& facts) {
 PassType GBuffer::type() {
     Describe<GBuffer> table(
         "GBuffer", "Rasterizes what the camera sees first: depth, normals, position, material, motion");
-    table.output("depth", PortKind::Texture,
-                 "Reversed depth of the rasterizer: 1 at the near plane, 0 where nothing is");
-    for (const Target& target : targets) table.output(target.port, PortKind::Texture, target.description);
+    table
+        .output("depth", PortKind::Texture,
+                "Reversed depth of the rasterizer: 1 at the near plane, 0 where nothing is")
+        .carries(content::depth);
+    for (const Target& target : targets)
+        table.output(target.port, PortKind::Texture, target.description).carries(target.content);
     table.number("divisor", &GBuffer::divisor, 1, 16, "",
                  "Resolution per axis is that of the frame divided by this");
     table.number("guard", &GBuffer::guard, 0, 512, "pixels",

@@ -8,31 +8,35 @@ namespace {
 struct Part {
     const char* port;
     const char* define;
+    Content content;
     const char* description;
     float neutral; // a constant input of this value changes nothing and is left out
 };
 
-constexpr Part compositeParts[] = {
-    {"direct", "DIRECT", "Direct light, irradiance over pi", 0},
-    {"area", "AREA", "Direct light of area lights with their shadows, irradiance over pi", 0},
-    {"indirect", "INDIRECT", "Indirect light, irradiance over pi", 0},
-    {"visibility", "VISIBILITY", "Ambient visibility: multiplies indirect and ambient light", 1},
-    {"shadow", "SHADOWED", "Visibility of the lights: multiplies the direct light", 1},
-    {"specular", "SPECULAR", "Radiance reflected specularly towards the eye", 0},
-    {"reflection", "REFLECTION", "More of it: what rays along the specular lobe bring", 0},
-    {"emission", "EMISSION", "Emitted radiance", 0},
-    {"background", "BACKGROUND", "Radiance where nothing is", 0},
-    {"material", "MATERIAL", "Roughness, metallic, unlit: metals reflect nothing diffusely, the unlit shine",
-     -1},
+const Part compositeParts[] = {
+    {"direct", "DIRECT", {}, "Direct light, irradiance over pi", 0},
+    {"area", "AREA", {}, "Direct light of area lights with their shadows, irradiance over pi", 0},
+    {"indirect", "INDIRECT", {}, "Indirect light, irradiance over pi", 0},
+    {"visibility", "VISIBILITY", {}, "Ambient visibility: multiplies indirect and ambient light", 1},
+    {"shadow", "SHADOWED", {}, "Visibility of the lights: multiplies the direct light", 1},
+    {"specular", "SPECULAR", {}, "Radiance reflected specularly towards the eye", 0},
+    {"reflection", "REFLECTION", {}, "More of it: what rays along the specular lobe bring", 0},
+    {"emission", "EMISSION", {}, "Emitted radiance", 0},
+    {"background", "BACKGROUND", {}, "Radiance where nothing is", 0},
+    {"material", "MATERIAL", content::material,
+     "Roughness, metallic, unlit: metals reflect nothing diffusely, the unlit shine", -1},
 };
 
 } // namespace
 
 PassType Composite::type() {
     Describe<Composite> table("Composite", "Radiance that reaches the eye, from light and material");
-    table.input("albedo", PortKind::Texture, "Linear base colour; a is 0 where nothing is");
+    table.input("albedo", PortKind::Texture, "Linear base colour; a is 0 where nothing is")
+        .carries(content::colour);
     for (const Part& part : compositeParts)
-        table.optionalInput(part.port, PortKind::Texture, part.description);
+        table.optionalInput(part.port, PortKind::Texture, part.description)
+            .carries(part.content)
+            .sameExtentAs("albedo");
     table.output("result", PortKind::Texture, "Outgoing radiance; a is 1 where something is")
         .vector("ambient", &Composite::ambient, 0, 1e9, "radiance",
                 "Light from all sides besides the inputs: albedo times this, darkened by visibility");
@@ -55,9 +59,6 @@ Declaration Composite::declare(const World&, const Inputs& inputs, const Demand&
         if (!inputs.connected(part.port)) continue;
         const Inputs::Input& input = inputs[part.port];
         const FormatInfo& format = formatInfo(input.desc.format);
-        if (input.desc.extent != albedo.extent)
-            declaration.problems.push_back(
-                {part.port, fmt::format("is {} but albedo is {}", describe(input.desc), describe(albedo))});
         if (format.integer)
             declaration.problems.push_back(
                 {part.port, fmt::format("is no light: it is {}", describe(input.desc))});

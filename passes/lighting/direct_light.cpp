@@ -1,6 +1,5 @@
 #include "direct_light.h"
 #include <algorithm>
-#include <fmt/format.h>
 
 namespace kestrel {
 namespace {
@@ -25,19 +24,29 @@ void noteLeftOutKinds(const SceneFacts& facts, std::vector<LeftOut>& leftOut) {
 PassType DirectLight::type() {
     return Describe<DirectLight>("DirectLight", "Light straight from the scene's lights, through shadow maps")
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
         .optionalInput("albedo", PortKind::Texture, "Their linear base colour, for specular")
+        .carries(content::colour)
+        .sameExtentAs("depth")
         .optionalInput("material", PortKind::Texture, "Their roughness and metallic, for specular")
+        .carries(content::material)
+        .sameExtentAs("depth")
         .output("result", PortKind::Texture, "Irradiance over pi; 0 where nothing is")
+        .carries(content::colour)
         .range(0, 1e30)
         .output(
             "specular", PortKind::Texture,
             "Radiance reflected specularly towards the eye from point, spot and directional lights; needs "
             "albedo and material")
+        .carries(content::colour)
         .range(0, 1e30)
         .output("radiance", PortKind::Radiance,
                 "Light of the lights that leaves a hit diffusely, and its emission; needs its material")
         .output("shadow_maps", PortKind::Texture, "Reversed depth that each light sees, layer by layer")
+        .carries(content::depth)
         .internal("maps", PortKind::Buffer, "How the maps lie (shared/light_map.h), and the lights")
         .number("resolution", &DirectLight::resolution, 16, 8192, "texels",
                 "Width of a shadow map; a point or sphere light has six, a rectangle five")
@@ -118,13 +127,6 @@ void DirectLight::declareShading(const World& world, const Inputs& inputs, const
     const Desc& depth = inputs["depth"].desc;
     const Desc texture = Desc::texture2D(Format::RGBA32F, depth.extent, depth.view);
     const bool glossy = inputs.connected("albedo") && inputs.connected("material");
-    std::vector<const char*> read = {"normal"};
-    if (glossy) read.insert(read.end(), {"albedo", "material"});
-    for (const char* port : read)
-        if (inputs[port].desc.extent != depth.extent)
-            declaration.problems.push_back(
-                {port, fmt::format("is {} but depth is {}", describe(inputs[port].desc), describe(depth))});
-
     const bool dark =
         maps.lights() == 0 || inputs["depth"].constant == glm::vec4(0) || world.facts.triangles == 0;
     Step shade{

@@ -60,10 +60,12 @@ Image readSurroundings(const std::string& file, const Scene& scene) {
 PassType Environment::type() {
     return Describe<Environment>("Environment", "Light from the surroundings, by direction")
         .optionalInput("depth", PortKind::Texture, "Reversed depth: the background shows where it is 0")
+        .carries(content::depth)
         .output("radiance", PortKind::Radiance,
                 "The surroundings where a ray meets nothing; surfaces give nothing")
         .output("background", PortKind::Texture,
                 "The surroundings as the camera sees them where there is no surface, else 0; needs depth")
+        .carries(content::colour)
         .internal("settings", PortKind::Buffer, "The properties, for shaders")
         .internal("picture", PortKind::Texture, "The image, latitude by longitude")
         .choice("kind", &Environment::kind, {"constant", "gradient", "picture"},

@@ -1,6 +1,5 @@
 #include "reflective_shadow_map.h"
 #include <algorithm>
-#include <fmt/format.h>
 
 namespace kestrel {
 namespace {
@@ -11,16 +10,21 @@ struct MapTarget {
     const char* define;
     Format format;
     bool lookedUp; // by the module
+    Content content;
     const char* description;
 };
 
-constexpr MapTarget mapTargets[] = {
-    {"map_radiance", "OUT_RADIANCE", Format::RGBA16F, true,
+const MapTarget mapTargets[] = {
+    {"map_radiance", "OUT_RADIANCE", Format::RGBA16F, true, content::colour,
      "Radiance that the surface reflects diffusely: albedo / pi times irradiance; 0 where nothing is"},
-    {"map_normal", "OUT_NORMAL", Format::RGBA32F, true,
+    {"map_normal",
+     "OUT_NORMAL",
+     Format::RGBA32F,
+     true,
+     {.channels = 4, .space = Space::Render},
      "Normal of the triangle, unit, towards the light, render space; w: the plane's distance from the map's "
      "origin along it (not positive). 0 where nothing is"},
-    {"map_position", "OUT_POSITION", Format::RGBA32F, false,
+    {"map_position", "OUT_POSITION", Format::RGBA32F, false, content::position,
      "Render-space position; w is 1 where something is"},
 };
 
@@ -32,9 +36,11 @@ PassType ReflectiveShadowMap::type() {
     table.output("radiance", PortKind::Radiance,
                  "Light of the maps that leaves a hit, one diffuse reflection; needs positions only");
     for (const MapTarget& target : mapTargets)
-        table.output(target.port, PortKind::Texture, target.description);
+        table.output(target.port, PortKind::Texture, target.description).carries(target.content);
     table.output("map_depth", PortKind::Texture, "Reversed depth of the maps")
+        .carries(content::depth)
         .output("maps", PortKind::Buffer, "How the maps lie (shared/light_map.h), and the lights")
+        .carries(content::elements("LightMap"))
         .number("resolution", &ReflectiveShadowMap::resolution, 16, 8192, "texels",
                 "Width of a map; a point or sphere light has six, a rectangle five")
         .flag("area_lights", &ReflectiveShadowMap::areaLights,

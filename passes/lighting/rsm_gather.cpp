@@ -1,5 +1,4 @@
 #include "rsm_gather.h"
-#include <fmt/format.h>
 
 namespace kestrel {
 namespace {
@@ -21,13 +20,23 @@ PassType RsmGather::type() {
     return Describe<RsmGather>("RsmGather",
                                "Indirect light gathered from reflective shadow maps, without visibility")
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
         .input("maps", PortKind::Buffer, "How the maps lie, and the lights")
+        .carries(content::elements("LightMap"))
         .input("map_radiance", PortKind::Texture, "Radiance reflected at the maps' texels")
+        .carries(content::colour)
         .input("map_normal", PortKind::Texture, "Normals there, and the planes' distances")
+        .carries({.channels = 4, .space = Space::Render})
+        .sameExtentAs("map_radiance")
         .input("map_position", PortKind::Texture, "Positions there")
+        .carries(content::position)
+        .sameExtentAs("map_radiance")
         .output("result", PortKind::Texture,
                 "Cosine-weighted mean of the radiance that arrives (irradiance over pi); 0 where nothing is")
+        .carries(content::colour)
         .range(0, 1e30)
         .number("samples", &RsmGather::samples, 1, 512, "texels", "Asked of each light, a pixel and frame")
         .number(
@@ -40,16 +49,6 @@ PassType RsmGather::type() {
 Declaration RsmGather::declare(const World& world, const Inputs& inputs, const Demand&) const {
     Declaration declaration;
     const Desc& depth = inputs["depth"].desc;
-    const Desc& radiance = inputs["map_radiance"].desc;
-    if (inputs["normal"].desc.extent != depth.extent)
-        declaration.problems.push_back(
-            {"normal",
-             fmt::format("is {} but depth is {}", describe(inputs["normal"].desc), describe(depth))});
-    for (const char* port : {"map_normal", "map_position"})
-        if (inputs[port].desc.extent != radiance.extent)
-            declaration.problems.push_back(
-                {port, fmt::format("is {} but map_radiance is {}", describe(inputs[port].desc),
-                                   describe(radiance))});
     Output result{.port = "result", .desc = Desc::texture2D(Format::RGBA32F, depth.extent, depth.view)};
     const std::optional<LightMapLayout> layout = layoutOf(world.facts, inputs["maps"].desc);
     if (!layout || inputs["map_radiance"].constant || inputs["depth"].constant) {

@@ -7,6 +7,7 @@ namespace kestrel {
 PassType ScreenTrace::type() {
     return Describe<ScreenTrace>("ScreenTrace", "Marches rays over the pixels of a depth buffer")
         .input("depth", PortKind::Texture, "Reversed depth of the visible surfaces")
+        .carries(content::depth)
         .output("tracer", PortKind::Tracer, "Hits what the image shows; everything else is missed")
         .internal("settings", PortKind::Buffer, "How rays are marched (shared/near_field.h)")
         .number("steps", &ScreenTrace::steps, 1, 1024, "samples", "Samples along a ray; then it is a miss")

@@ -35,7 +35,9 @@ PassType OccupancyMap::type() {
     Describe<OccupancyMap> table("OccupancyMap",
                                  "One bit a cell of a cube around the scene: is there a surface?");
     table.output("occupancy", PortKind::Buffer, "The bits, 32 cells along z a word")
-        .output("grid", PortKind::Buffer, "Where the cells lie");
+        .carries(content::elements("OccupancyWord"))
+        .output("grid", PortKind::Buffer, "Where the cells lie")
+        .carries(content::elements("OccupancyGrid"));
     for (int axis = 0; axis < 3; ++axis)
         table
             .internal(axisPorts[axis], PortKind::Texture,
@@ -68,7 +70,7 @@ Declaration OccupancyMap::declare(const World& world, const Inputs&, const Deman
     const char* extension = neededExtension(method);
     if (extension && !world.capabilities.has(extension)) {
         declaration.problems.push_back(
-            {"", fmt::format("this method needs {}, which this context lacks", extension)});
+            {"", fmt::format("this method needs {}, which this context lacks", extension), true});
         return declaration;
     }
     const bool empty = world.facts.triangles == 0 || !hasExtent(world.facts.sphere, resolution);

@@ -27,7 +27,9 @@ Desc columnsDesc(int resolution, int levels) {
 PassType OccupancyTrace::type() {
     return Describe<OccupancyTrace>("OccupancyTrace", "Walks through an occupancy map: 3D or 2D DDA")
         .input("occupancy", PortKind::Buffer, "Occupancy map")
+        .carries(content::elements("OccupancyWord"))
         .input("grid", PortKind::Buffer, "Where its cells lie")
+        .carries(content::elements("OccupancyGrid"))
         .output("tracer", PortKind::Tracer, "Traces the exact direction through the map")
         .internal("columns", PortKind::Buffer, "The map with each column's words together, level by level")
         .internal("settings", PortKind::Buffer, "Where rays begin (shared/occupancy.h)")

@@ -10,7 +10,9 @@ PassType Roma::type() {
     return Describe<Roma>("Roma",
                           "Ray-aligned occupancy map array: an occupancy map rotated towards many directions")
         .input("occupancy", PortKind::Buffer, "Base occupancy map")
+        .carries(content::elements("OccupancyWord"))
         .input("grid", PortKind::Buffer, "Where its cells lie")
+        .carries(content::elements("OccupancyGrid"))
         .output("tracer", PortKind::Tracer,
                 "Traces through the rotated maps, snapping where the consumer bears it")
         .internal("maps", PortKind::Buffer,

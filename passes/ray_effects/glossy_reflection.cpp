@@ -1,7 +1,6 @@
 #include "glossy_reflection.h"
 #include "draw/ray_steps.h"
 #include "execute/commands.h"
-#include <fmt/format.h>
 
 namespace kestrel {
 
@@ -9,13 +8,21 @@ PassType GlossyReflection::type() {
     return Describe<GlossyReflection>("GlossyReflection",
                                       "Light reflected by rough surfaces, by rays through any tracer")
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
         .input("albedo", PortKind::Texture, "Their linear base colour")
+        .carries(content::colour)
+        .sameExtentAs("depth")
         .input("material", PortKind::Texture, "Their roughness, metallic, and in z whether they are unlit")
+        .carries(content::material)
+        .sameExtentAs("depth")
         .input("tracer", PortKind::Tracer, "Who answers the closest-hit queries")
         .input("radiance", PortKind::Radiance, "The light at the ends of the rays")
         .output("result", PortKind::Texture,
                 "Radiance that leaves towards the eye by the specular lobe; 0 where nothing is")
+        .carries(content::colour)
         .range(0, std::numeric_limits<double>::infinity())
         .number("rays", &GlossyReflection::rays, 1, 256, "rays", "Rays a pixel and frame")
         .number("distance", &GlossyReflection::distance, 0, 1e9, "scene units",
@@ -27,10 +34,6 @@ PassType GlossyReflection::type() {
 Declaration GlossyReflection::declare(const World& world, const Inputs& inputs, const Demand&) const {
     Declaration declaration;
     const Desc& depth = inputs["depth"].desc;
-    for (const char* port : {"normal", "albedo", "material"})
-        if (inputs[port].desc.extent != depth.extent)
-            declaration.problems.push_back(
-                {port, fmt::format("is {} but depth is {}", describe(inputs[port].desc), describe(depth))});
     Output result{.port = "result", .desc = Desc::texture2D(Format::RGBA32F, depth.extent, depth.view)};
     if (inputs["depth"].constant == glm::vec4(0)) {
         result.constant = glm::vec4(0);

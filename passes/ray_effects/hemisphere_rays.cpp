@@ -1,7 +1,6 @@
 #include "hemisphere_rays.h"
 #include "execute/commands.h"
 #include "shared/ray.h"
-#include <fmt/format.h>
 
 namespace kestrel {
 
@@ -9,8 +8,12 @@ PassType HemisphereRays::type() {
     return Describe<HemisphereRays>("HemisphereRays",
                                     "One ray a pixel over the cosine-weighted hemisphere, as a buffer")
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
         .output("rays", PortKind::Buffer, "One record a pixel in rows from the bottom (shared/ray.h)")
+        .carries(content::elements("RayRecord"))
         .number("distance", &HemisphereRays::distance, 0, 1e9, "scene units",
                 "Length of the rays; 0: unbounded");
 }
@@ -18,10 +21,6 @@ PassType HemisphereRays::type() {
 Declaration HemisphereRays::declare(const World&, const Inputs& inputs, const Demand&) const {
     Declaration declaration;
     const Extent extent = inputs["depth"].desc.extent;
-    if (inputs["normal"].desc.extent != extent)
-        declaration.problems.push_back(
-            {"normal", fmt::format("is {} but depth is {}", describe(inputs["normal"].desc),
-                                   describe(inputs["depth"].desc))});
     const std::uint64_t pixels = std::uint64_t{extent.width} * extent.height;
     declaration.outputs.push_back(
         {.port = "rays", .desc = Desc::buffer(pixels * sizeof(shared::RayRecord), Format::RGBA32UI)});

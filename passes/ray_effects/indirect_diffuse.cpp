@@ -1,7 +1,6 @@
 #include "indirect_diffuse.h"
 #include "draw/ray_steps.h"
 #include "execute/commands.h"
-#include <fmt/format.h>
 
 namespace kestrel {
 
@@ -9,15 +8,20 @@ PassType IndirectDiffuse::type() {
     return Describe<IndirectDiffuse>("IndirectDiffuse",
                                      "One bounce of diffuse light by rays through any tracer")
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
         .input("tracer", PortKind::Tracer, "Who answers the closest-hit queries")
         .input("radiance", PortKind::Radiance, "The light at the ends of the rays")
         .output("result", PortKind::Texture,
                 "Cosine-weighted mean of the radiance that arrives (irradiance over pi); 0 where nothing is")
+        .carries(content::colour)
         .range(0, std::numeric_limits<double>::infinity())
         .output("weight", PortKind::Texture,
                 "How much this frame's result counts in a mean over frames (for snapping tracers); 1 where "
                 "nothing is")
+        .carries({.channels = 1})
         .number("rays", &IndirectDiffuse::rays, 1, 256, "rays", "Rays a pixel and frame")
         .number("distance", &IndirectDiffuse::distance, 0, 1e9, "scene units",
                 "How far surfaces count, beyond it a ray meets nothing; 0: any distance")
@@ -30,10 +34,6 @@ PassType IndirectDiffuse::type() {
 Declaration IndirectDiffuse::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
     Declaration declaration;
     const Desc& depth = inputs["depth"].desc;
-    if (inputs["normal"].desc.extent != depth.extent)
-        declaration.problems.push_back(
-            {"normal",
-             fmt::format("is {} but depth is {}", describe(inputs["normal"].desc), describe(depth))});
     const bool snaps =
         snap && (inputs["tracer"].desc.provides & (provides::Snaps | provides::AlwaysSnaps)) != 0;
     const bool background = inputs["depth"].constant == glm::vec4(0);

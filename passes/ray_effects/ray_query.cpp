@@ -14,10 +14,13 @@ constexpr std::uint32_t groupsPerRow = 32768;
 PassType RayQuery::type() {
     return Describe<RayQuery>("RayQuery", "Traces a buffer of rays through any tracer into a buffer of hits")
         .input("rays", PortKind::Buffer, "Ray records (shared/ray.h)")
+        .carries(content::elements("RayRecord"))
         .input("tracer", PortKind::Tracer, "Who answers")
         .output("hits", PortKind::Buffer, "One hit record a ray (shared/ray.h)")
+        .carries(content::elements("HitRecord"))
         .output("distance", PortKind::Buffer,
                 "One float a ray, as HitRecord::t: for those who need no more, in half the time")
+        .carries(content::elements("float"))
         .choice("query", &RayQuery::query, {"any", "closest"}, "Is anything there, or what is nearest?")
         .flag("snap", &RayQuery::snap, "Bears that a tracer replaces directions by nearby ones");
 }

@@ -42,16 +42,22 @@ PassType SoftShadow::type() {
                "SoftShadow",
                "Light straight from area lights and emissive meshes, by shadow rays through any tracer")
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
+        .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
         .input("tracer", PortKind::Tracer, "Who answers the visibility queries")
         .output("result", PortKind::Texture, "Irradiance over pi that arrives; 0 where nothing is")
+        .carries(content::colour)
         .range(0, std::numeric_limits<double>::infinity())
         .output("visibility", PortKind::Texture,
                 "How bright the result is over what it would be without shadows; 1 where no light reaches")
+        .carries({.channels = 1})
         .range(0, 1)
         .output(
             "weight", PortKind::Texture,
             "How bright the result would be without shadows: what this frame's visibility counts in a mean")
+        .carries({.channels = 1})
         .range(0, std::numeric_limits<double>::infinity())
         .internal("emitters", PortKind::Buffer, "What shines (shared/emitter.h)")
         .number("rays", &SoftShadow::rays, 1, 256, "rays",
@@ -65,10 +71,6 @@ PassType SoftShadow::type() {
 Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
     Declaration declaration;
     const Desc& depth = inputs["depth"].desc;
-    if (inputs["normal"].desc.extent != depth.extent)
-        declaration.problems.push_back(
-            {"normal",
-             fmt::format("is {} but depth is {}", describe(inputs["normal"].desc), describe(depth))});
     const bool meshes = emission && world.facts.hasEmission;
     const bool rectangles = world.facts.rectangleLights > 0, spheres = world.facts.sphereLights > 0;
     const bool background = inputs["depth"].constant == glm::vec4(0);

@@ -1,6 +1,5 @@
 #include "gather_pass.h"
 #include "execute/commands.h"
-#include <fmt/format.h>
 
 namespace kestrel {
 
@@ -9,13 +8,7 @@ Declaration declareGather(const Inputs& inputs, const std::vector<std::string>& 
     Declaration declaration;
     const Desc& position = inputs["position"].desc;
     Step step{.name = "gather", .group = "reference"};
-    for (const std::string& port : reads) {
-        step.uses.push_back({.port = port, .access = Access::Host});
-        if (inputs[port].desc.extent != position.extent)
-            declaration.problems.push_back(
-                {port,
-                 fmt::format("is {} but position is {}", describe(inputs[port].desc), describe(position))});
-    }
+    for (const std::string& port : reads) step.uses.push_back({.port = port, .access = Access::Host});
     const bool empty = inputs["position"].constant.has_value();
     for (const std::string& port : writes) {
         const Format format = port == "result" ? Format::RGBA32F : Format::R32F;

@@ -1,7 +1,6 @@
 #include "reference_ambient_occlusion.h"
 #include "execute/commands.h"
 #include "reference/ambient_occlusion.h"
-#include <fmt/format.h>
 
 namespace kestrel {
 
@@ -9,7 +8,10 @@ PassType ReferenceAmbientOcclusion::type() {
     return Describe<ReferenceAmbientOcclusion>("ReferenceAmbientOcclusion",
                                                "Ambient occlusion by Embree on the CPU: the truth")
         .input("position", PortKind::Texture, "Render-space positions of the surfaces")
+        .carries(content::position)
         .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .carries(content::normal)
+        .sameExtentAs("position")
         .output("visibility", PortKind::Texture,
                 "Share of the cosine-weighted hemisphere that is open; 1 where nothing is")
         .number("samples", &ReferenceAmbientOcclusion::samples, 2, 65536, "rays",
@@ -21,10 +23,6 @@ PassType ReferenceAmbientOcclusion::type() {
 Declaration ReferenceAmbientOcclusion::declare(const World&, const Inputs& inputs, const Demand&) const {
     Declaration declaration;
     const Desc& position = inputs["position"].desc;
-    if (inputs["normal"].desc.extent != position.extent)
-        declaration.problems.push_back(
-            {"normal",
-             fmt::format("is {} but position is {}", describe(inputs["normal"].desc), describe(position))});
     Output visibility{.port = "visibility",
                       .desc = Desc::texture2D(Format::R32F, position.extent, position.view)};
     if (inputs["position"].constant) { // nothing in view

@@ -9,9 +9,16 @@ PassType ReferenceGlossyReflection::type() {
                "ReferenceGlossyReflection",
                "Light reflected by rough surfaces by Embree on the CPU: the truth")
         .input("position", PortKind::Texture, "Render-space positions of the surfaces")
+        .carries(content::position)
         .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .carries(content::normal)
+        .sameExtentAs("position")
         .input("albedo", PortKind::Texture, "Their linear base colour")
+        .carries(content::colour)
+        .sameExtentAs("position")
         .input("material", PortKind::Texture, "Their roughness, metallic, and in z whether they are unlit")
+        .carries(content::material)
+        .sameExtentAs("position")
         .output("result", PortKind::Texture,
                 "Radiance that leaves towards the eye by the specular lobe; 0 where nothing is")
         .number("samples", &ReferenceGlossyReflection::samples, 2, 65536, "rays",

@@ -8,7 +8,10 @@ PassType ReferenceIndirectDiffuse::type() {
     return Describe<ReferenceIndirectDiffuse>("ReferenceIndirectDiffuse",
                                               "One bounce of diffuse light by Embree on the CPU: the truth")
         .input("position", PortKind::Texture, "Render-space positions of the surfaces")
+        .carries(content::position)
         .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .carries(content::normal)
+        .sameExtentAs("position")
         .output("result", PortKind::Texture,
                 "Cosine-weighted mean of the radiance that arrives (irradiance over pi); 0 where nothing is")
         .output("weight", PortKind::Texture, "1: all frames count alike")

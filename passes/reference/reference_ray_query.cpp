@@ -28,7 +28,9 @@ PassType ReferenceRayQuery::type() {
     return Describe<ReferenceRayQuery>("ReferenceRayQuery",
                                        "Traces a buffer of rays by Embree on the CPU, in packets: the truth")
         .input("rays", PortKind::Buffer, "Ray records (shared/ray.h)")
+        .carries(content::elements("RayRecord"))
         .output("hits", PortKind::Buffer, "One hit record a ray (shared/ray.h)")
+        .carries(content::elements("HitRecord"))
         .choice("query", &ReferenceRayQuery::query, {"any", "closest"},
                 "Is anything there, or what is nearest?")
         .number("threads", &ReferenceRayQuery::threads, 1, 256, "threads", "Of the CPU");

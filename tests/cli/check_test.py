@@ -26,6 +26,15 @@ def test_check_needs_no_opengl():
     assert fallen.status == 0 and "minimum of OpenGL 4.6" in fallen.err, fallen.err
 
 
+def test_where_no_device_is_a_limit_is_a_note():
+    large = ["check", RAY_AO, "--scene", "builtin:tower", "--set", "ao.tracer=bvh.tracer", "--no-shaders"]
+    without = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/none", "LIBGL_DRIVERS_PATH": "/none", "EGL_PLATFORM": "none"}
+    assert any("texels" in line for line in refused(*large, "--minimum", status=3))
+    told = kestrel(*large, env=without)
+    assert told.status == 0 and "beyond the minimum of OpenGL 4.6: pass 'bvh'" in told.err, told.err
+    assert "bvh (Bvh)" in told.out
+
+
 def test_check_says_what_the_swap_leaves_out():
     out = done("check", RAY_AO, *BLOB, "--set", "ao.tracer=bvh.tracer", "--json").json()
     names = [item["name"] for item in out["passes"]]
@@ -43,7 +52,7 @@ def test_check_takes_capabilities_from_a_file():
     with folder() as here:
         file = Path(here) / "caps.json"
         file.write_text('{"renderer": "small", "max_texture_buffer_texels": 16}')
-        lines = refused("check", RAY_AO, *BLOB, "--set", "ao.tracer=bvh.tracer", "--capabilities", file)
+        lines = refused("check", RAY_AO, *BLOB, "--set", "ao.tracer=bvh.tracer", "--capabilities", file, status=3)
         assert any("texel" in line for line in lines), lines
         file.write_text('{"max_texel_size": 16, "extensions": [1]}')
         lines = refused("check", RAY_AO, *BLOB, "--capabilities", file)
@@ -75,6 +84,12 @@ def test_dot_draws_what_is_left_out_faded():
     faded = [line for line in out.splitlines() if line.strip().startswith('"bvh" [')]
     assert len(faded) == 1 and "dashed" in faded[0] and "nobody reads" in faded[0], faded
     assert '"roma" -> "ao" [label="tracer", style=bold]' in out
+
+
+def test_dot_draws_every_shipped_graph_whatever_a_device_could_bear():
+    for graph in sorted((SOURCE / "graphs").glob("*.json")):
+        if graph.name != "schema.json":
+            assert done("dot", graph, "--scene", "builtin:tower").out.startswith("digraph"), graph
 
 
 def test_passes_lists_and_tells():

@@ -52,24 +52,24 @@ const std::string text =
 
 TEST(Report, APlanAsText) {
     EXPECT_EQ(planText(compileText(text, reportRegistry())),
-              R"(Order at 640x360 (3 passes, 3 steps, 1 programs):
+              R"(size: 640x360
+order: 3 passes, 3 steps, 1 programs
   s (Source)
     only  [mock.comp]  after barrier ShaderImage
   t (Tuned)
     only  [mock.comp]  after barrier TextureFetch
   u (Tuned)
     only  [mock.comp]  after barrier TextureFetch
-Memory:
+resources: 3 in 3 objects
   object 0: rgba16f 16x16, 2048 bytes
     s.a: steps 0 to 1
   object 1: rgba16f 16x16, 2048 bytes
     u.r: persistent
   object 2: rgba16f 16x16, 2048 bytes
     t.r: steps 1 to 2
-  transient 4096 bytes (0.00 MiB), without sharing 4096 bytes (0.00 MiB); persistent 2048 bytes (0.00 MiB)
-Left out:
-  s.b: nobody reads it
-  rival: nobody reads 'rival.r'
+memory: 4 KiB shared by lifetime (unshared 4 KiB), 2 KiB that stays
+left out: s.b, because nobody reads it
+left out: rival, because nobody reads 'rival.r'
 )");
 }
 
@@ -78,7 +78,9 @@ TEST(Report, APlanAsJson) {
     EXPECT_EQ(json.find("passes")->items.size(), 3u);
     EXPECT_EQ(json.find("left_out")->items[1].find("why")->text, "nobody reads 'rival.r'");
     EXPECT_EQ(json.find("memory")->find("transient")->integer, 4096);
-    const Json& step = json.find("passes")->items[1].find("steps")->items[0];
+    EXPECT_EQ(json.find("passes")->items[1].find("steps")->items[0].text, "only");
+    const Json& step = json.find("steps")->items[1];
+    EXPECT_EQ(step.find("pass")->text, "t");
     EXPECT_EQ(step.find("barrier")->text, "TextureFetch");
     EXPECT_EQ(step.find("bindings")->items[0].find("name")->text, "x");
     EXPECT_EQ(json.find("programs")->items[0].find("files")->items[0].text, "mock.comp");
@@ -89,22 +91,22 @@ TEST(Report, NothingLeftOutIsSaidToo) {
     CompileOptions keep;
     keep.keepAll = true;
     EXPECT_THAT(planText(compileText(text, reportRegistry(), keep)),
-                testing::EndsWith("Left out:\n  nothing\n"));
+                testing::EndsWith("left out: nothing\n"));
 }
 
 TEST(Report, AGraphForGraphviz) {
     const Registry registry = reportRegistry();
     const Graph graph = parseGraph(text, "g.json");
-    const std::string dot =
-        dotText(graph, registry, compile(graph, registry, makePasses(graph, registry), {}));
+    const Plan plan = compile(graph, registry, makePasses(graph, registry), {});
+    const std::string dot = dotText(graph, registry, &plan);
     EXPECT_THAT(dot, HasSubstr("digraph \"A \\\"graph\\\"\" {"));
     EXPECT_THAT(dot, HasSubstr("\"t\" [label=\"t\\nTuned\"];"));
-    EXPECT_THAT(dot,
-                HasSubstr("\"rival\" [label=\"rival\\nTuned\", style=dashed, color=gray75, fontcolor=gray60, "
-                          "tooltip=\"left out: nobody reads 'rival.r'\"];"));
-    EXPECT_THAT(dot, HasSubstr("\"s\" -> \"t\" [label=\"a > x\", color=black, fontcolor=black];"));
-    EXPECT_THAT(dot, HasSubstr("\"s\" -> \"rival\" [label=\"a > x\", color=gray75, fontcolor=gray75];"));
+    EXPECT_THAT(dot, HasSubstr("\"rival\" [label=\"rival\\nTuned\", color=gray70, fontcolor=gray70, "
+                               "style=\"rounded,dashed\", tooltip=\"left out: nobody reads 'rival.r'\"];"));
+    EXPECT_THAT(dot, HasSubstr("\"s\" -> \"t\" [label=\"a → x\"];"));
+    EXPECT_THAT(dot, HasSubstr("\"s\" -> \"rival\" [label=\"a → x\", color=gray70, fontcolor=gray70];"));
     EXPECT_THAT(dot, HasSubstr("\"u\" -> \"output u.r\";"));
+    EXPECT_THAT(dotText(graph, registry, nullptr), HasSubstr("\"rival\" [label=\"rival\\nTuned\"];"));
 }
 
 TEST(Report, PassTypesAsTextAndJson) {
