@@ -1,4 +1,8 @@
 #include "plugin/plugin.h"
+#include "ambient_occlusion_first.h"
 #include "ray_ambient_occlusion.h"
 
-KESTREL_PLUGIN { registry.add(kestrel::RayAmbientOcclusion::type()); }
+KESTREL_PLUGIN {
+    registry.add(kestrel::AmbientOcclusionFirst::type());
+    registry.add(kestrel::RayAmbientOcclusion::type());
+}

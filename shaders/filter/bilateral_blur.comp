@@ -7,7 +7,10 @@ layout(DEPTH_FORMAT) uniform readonly image2D view_depth;
 layout(SIGNAL_FORMAT) uniform writeonly image2D TARGET;
 uniform float sharpness;
 
-float depthAt(ivec2 pixel, ivec2 last) { return imageLoad(view_depth, clamp(pixel, ivec2(0), last)).r; }
+// BAND pixels of the depth lie around the signal on each side.
+float depthAt(ivec2 pixel, ivec2 last) {
+    return imageLoad(view_depth, clamp(pixel, ivec2(-BAND), last + BAND) + BAND).r;
+}
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -18,9 +21,11 @@ void main() {
     vec4 centre = imageLoad(SOURCE, pixel);
     float z0 = depthAt(pixel, last);
 #ifdef SLOPE
-    // The flatter of the two one-sided differences: the steeper one may span an edge.
+    // The flatter of the two one-sided differences: the steeper one may span an edge. At the border there is but one.
     float ahead = depthAt(pixel + AXIS, last) - z0;
     float behind = z0 - depthAt(pixel - AXIS, last);
+    if (any(greaterThan(pixel + AXIS, last + BAND))) ahead = behind;
+    if (any(lessThan(pixel - AXIS, ivec2(-BAND)))) behind = ahead;
     float slope = abs(ahead) < abs(behind) ? ahead : behind;
 #else
     float slope = 0.0;

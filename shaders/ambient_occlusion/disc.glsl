@@ -1,0 +1,148 @@
+// Samples on a disc around a surface point, seen head-on, and what depths found there tell of its occlusion (Brüll, Kern,
+// Grosch, "Stenciled Volumetric Ambient Occlusion", 2022). A program with KERNEL_VAO or KERNEL_HBAO contains that kernel
+// only, others choose by the block.
+//
+// Lengths around the point are in radii. `height` is how far nearer to the eye than the point something is, along the line of
+// sight; the chord of the sphere over a sample reaches from `front`, half a chord up, down to `back`, where the tangent plane
+// cuts it. Contributions are visible volume (vao) or minus the occlusion (hbao): more occluders make them smaller, and what
+// several depths tell together is the least of what each tells.
+#include "lib/view.glsl"
+#include "shared/ambient_occlusion.h"
+
+layout(std140) uniform Settings { OcclusionKernel kernel; };
+
+#if defined(KERNEL_VAO)
+#define IS_HBAO false
+#elif defined(KERNEL_HBAO)
+#define IS_HBAO true
+#else
+#define IS_HBAO (kernel.kernel == kernelHbao)
+#endif
+
+// Pixel coordinates of an image: axis + perUnit * xy / depth, or of a parallel projection axis + perUnit * xy.
+struct EyeGrid {
+    vec2 axis, perUnit, unitsPer;
+    bool parallel;
+};
+
+EyeGrid eyeGrid(ViewData view) {
+    bool parallel = view.position.w != 0.0;
+    vec2 half_ = 0.5 * vec2(view.size);
+    vec2 perUnit = half_ * vec2(view.projection[0].x, view.projection[1].y);
+    vec2 shift = parallel ? view.projection[3].xy : -view.projection[2].xy;
+    return EyeGrid(half_ * (1.0 + shift), perUnit, 1.0 / perUnit, parallel);
+}
+
+vec3 eyePosition(EyeGrid grid, vec2 place, float depth) {
+    return vec3((place - grid.axis) * grid.unitsPer * (grid.parallel ? 1.0 : depth), -depth);
+}
+
+// A depth of 0 stands for nothing: as far away as numbers whose squares are finite allow.
+float depthOrFar(float depth) { return depth > 0.0 ? depth : 1e15; }
+
+struct DiscPoint {
+    vec3 position;            // eye space
+    vec3 tangent, bitangent;  // one radius long
+    vec3 toEye;               // unit
+    vec3 normal;              // eye space
+    vec3 plane;               // the normal along tangent, bitangent, toEye
+    float radius, perRadius;  // scene units, one over them
+    float radiusPixels;       // of the image
+    float away;               // distance from the eye, or from its plane of a parallel projection
+    vec2 place;               // pixel coordinate in the image
+};
+
+// Of the 4 x 4 ordered dither matrix, as turns.
+#define TURN(k) vec2(sin(float(k) * 0.39269908), cos(float(k) * 0.39269908))
+const vec2 discTurns[16] = vec2[](TURN(0), TURN(8), TURN(2), TURN(10), TURN(12), TURN(4), TURN(14), TURN(6), TURN(3), TURN(11),
+                                  TURN(1), TURN(9), TURN(15), TURN(7), TURN(13), TURN(5));
+
+// `pixel` counts from the corner of the frame, guard band excluded; `divisor` is the image's.
+DiscPoint discPoint(EyeGrid grid, vec2 place, float depth, vec3 normal, ivec2 pixel, float divisor) {
+    DiscPoint point;
+    point.place = place;
+    point.position = eyePosition(grid, place, depth);
+    point.away = grid.parallel ? depth : length(point.position);
+    point.toEye = grid.parallel ? vec3(0.0, 0.0, 1.0) : -point.position / point.away;
+    point.normal = dot(normal, point.toEye) < 0.0 ? -normal : normal;
+
+    float pixelsPerUnit = 0.5 * (grid.perUnit.x + grid.perUnit.y) / (grid.parallel ? 1.0 : depth);
+    float most = kernel.maximumRadius / (divisor * pixelsPerUnit);
+    point.radius = min(kernel.radius, most);
+    point.perRadius = 1.0 / point.radius;
+    point.radiusPixels = point.radius * pixelsPerUnit;
+
+    vec2 turn = discTurns[(pixel.x & 3) + 4 * (pixel.y & 3)];
+    vec3 bitangent = normalize(cross(point.toEye, vec3(turn, 0.0)));
+    vec3 tangent = cross(bitangent, point.toEye);
+    point.plane = vec3(dot(point.normal, tangent), dot(point.normal, bitangent), dot(point.normal, point.toEye));
+    point.plane.z = max(point.plane.z, 1e-4);
+    point.tangent = tangent * point.radius;
+    point.bitangent = bitangent * point.radius;
+    return point;
+}
+
+struct DiscSample {
+    vec3 position; // on the disc, eye space
+    vec2 place;    // pixel coordinate in the image
+    ivec2 pixel;   // the nearest one that the image has
+    float front, back;
+    float scale;   // one over the density
+    float whole;   // contribution where nothing occludes
+    bool counts;   // enough of its chord is before the tangent plane
+    bool inside;   // the image has its place
+    bool self;     // the point's own pixel
+};
+
+DiscSample discSample(EyeGrid grid, DiscPoint point, ivec2 size, vec4 disc) {
+    DiscSample s;
+    s.front = disc.z;
+    s.back = clamp(-dot(disc.xy, point.plane.xy) / point.plane.z, -disc.z, disc.z);
+    s.scale = disc.w;
+    s.whole = IS_HBAO ? 0.0 : (s.front - s.back) * s.scale;
+    s.counts = s.front - s.back > 0.2 * disc.z;
+    s.position = point.position + disc.x * point.tangent + disc.y * point.bitangent;
+    // A disc about a point near the eye may reach behind it: such a sample lies outside of any image.
+    float depth = grid.parallel ? 1.0 : max(-s.position.z, -1e-3 * point.position.z);
+    s.place = grid.axis + grid.perUnit * s.position.xy / depth;
+    s.pixel = ivec2(clamp(s.place, vec2(0.0), vec2(size) - 0.5));
+    s.inside = all(greaterThanEqual(s.place, vec2(0.0))) && all(lessThan(s.place, vec2(size)));
+    s.self = s.pixel == ivec2(point.place);
+    return s;
+}
+
+float sampleHeight(DiscPoint point, vec3 position) { return dot(position - point.position, point.toEye) * point.perRadius; }
+
+float vaoContribution(DiscSample s, float height) {
+    // Below the tangent plane the chord is free, inside the sphere what lies before; beyond the sphere's front and the
+    // thickness it comes back, so that what is far in front casts no halo.
+    float ramp = clamp((height - 1.0 - kernel.thickness) / s.front, 0.0, 1.0);
+    return max(s.front - max(s.back, height), 0.0) * s.scale + ramp * s.whole;
+}
+
+float hbaoContribution(DiscPoint point, DiscSample s, vec3 position) {
+    vec3 way = position - point.position;
+    float squared = dot(way, way);
+    float angle = clamp(dot(point.normal, way) * inversesqrt(max(squared, 1e-30)) - 0.1, 0.0, 1.0);
+    float falloff = clamp(1.0 - squared * point.perRadius * point.perRadius, 0.0, 1.0);
+    return -clamp(angle * falloff * s.scale, 0.0, 1.0);
+}
+
+// Of something at an eye-space position.
+float contribution(DiscPoint point, DiscSample s, vec3 position) {
+    return IS_HBAO ? hbaoContribution(point, s, position) : vaoContribution(s, sampleHeight(point, position));
+}
+
+// How high the range ends in which depths behind the first may occlude.
+float reachOf(DiscSample s) { return IS_HBAO ? max(s.front, 0.1) : 1.0 + kernel.thickness + s.front; }
+
+// Whether a first surface so high may hide what occludes.
+bool mayHide(DiscPoint point, DiscSample s, float height, float divisor) {
+    float least = IS_HBAO ? max(s.front, 0.1) : 1.0 + kernel.thickness;
+    return height > least && distance(s.place, point.place) * divisor > kernel.cutoff;
+}
+
+// Of the sum of contributions, before it is clamped and raised to the exponent.
+float meanVisibility(float sum, uint samples) { return (IS_HBAO ? 1.0 : 0.0) + 2.0 * sum / float(samples); }
+
+float finalVisibility(float mean) { return pow(clamp(mean, 0.0, 1.0), kernel.exponent); }

@@ -1,0 +1,70 @@
+// For every sample of the mask, the part of the ray through its texel of the stochastic depth map in which something may
+// occlude (section 3.2 of the stochastic depth map paper).
+//
+// A height over the point is met by the ray through a sample at a distance that the two share: the disc is square to the
+// point's own ray. The texel's ray may pass up to a texel's diagonal beside the sample, which changes the distance by the
+// sample's offset times the angle between them.
+#include "ambient_occlusion/disc.glsl"
+#include "ambient_occlusion/map.glsl"
+#include "shared/work_list.h"
+
+layout(local_size_x = 64) in;
+
+layout(r32f) uniform readonly image2D view_depth;
+layout(rgba16f) uniform readonly image2D normal;
+#ifdef DUAL
+layout(r32f) uniform readonly image2D second_depth;
+#endif
+layout(MASK_FORMAT) uniform readonly uimage2D mask;
+layout(std430) readonly buffer Pixels {
+    WorkListHeader header;
+    uint items[];
+} list;
+#ifdef SD_MASK
+layout(r8ui) uniform writeonly uimage2D sd_mask;
+#endif
+#ifdef INTERVAL
+layout(r32ui) uniform uimage2D ray_min;
+layout(r32ui) uniform uimage2D ray_max;
+#endif
+layout(std140) uniform ViewDepthView { ViewData depthView; };
+layout(std140) uniform MAP_VIEW { ViewData mapView; };
+
+void main() {
+    if (gl_GlobalInvocationID.x >= list.header.count) return;
+    ivec2 pixel = unpackPixel(list.items[gl_GlobalInvocationID.x]);
+    ivec2 at = pixel + int(depthView.guard);
+    float divisor = float(depthView.divisor);
+    float depth = imageLoad(view_depth, at).r;
+    EyeGrid grid = eyeGrid(depthView);
+    vec3 eyeNormal = mat3(depthView.view) * imageLoad(normal, at).xyz;
+    DiscPoint point = discPoint(grid, vec2(at) + 0.5, depthOrFar(depth), eyeNormal, pixel, divisor);
+    float texelAngle = 1.4142136 * float(mapView.divisor) * point.radius / (point.radiusPixels * divisor * point.away);
+
+    uint bits = imageLoad(mask, pixel).r;
+    while (bits != 0u) {
+        int i = findLSB(bits);
+        bits &= bits - 1u;
+        DiscSample s = discSample(grid, point, ivec2(depthView.size), kernel.disc[i]);
+        ivec2 texel = mapTexel(mapView, depthView, s.place);
+#ifdef SD_MASK
+        imageStore(sd_mask, texel, uvec4(1u));
+#endif
+#ifdef INTERVAL
+        float first = depthOrFar(imageLoad(view_depth, s.pixel).r);
+        float height = sampleHeight(point, eyePosition(grid, vec2(s.pixel) + 0.5, first));
+#ifdef DUAL
+        float second = depthOrFar(imageLoad(second_depth, s.pixel).r);
+        height = min(height, sampleHeight(point, eyePosition(grid, vec2(s.pixel) + 0.5, second)));
+#endif
+        float top = s.inside ? min(height, reachOf(s)) : reachOf(s);
+        float stretch = grid.parallel ? 1.0 : length(s.position) / point.away;
+        float slack = grid.parallel ? 0.0 : length(kernel.disc[i].xy) * point.radius * texelAngle;
+        float from = max((point.away - top * point.radius) * stretch - slack, 0.0);
+        float to = max((point.away - s.back * point.radius) * stretch + slack, 0.0);
+        // Of positive numbers the bits are ordered as the numbers are.
+        imageAtomicMin(ray_min, texel, floatBitsToUint(from));
+        imageAtomicMax(ray_max, texel, floatBitsToUint(to));
+#endif
+    }
+}
