@@ -1,6 +1,7 @@
 #include "reference/ambient_occlusion.h"
 #include "core/error.h"
 #include "reference/sampling.h"
+#include "shared/ray.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -86,7 +87,7 @@ private:
             for (int i = k; i < half_; i += stride) {
                 const glm::vec3 direction =
                     basis * cosineDirection(sobolPoint(static_cast<std::uint32_t>(i), seed));
-                if (glm::dot(direction, face) > 0)
+                if (shared::leavesFace(direction, face))
                     rays.push_back({origin, direction, 0, settings_.maximumDistance});
             }
         }

@@ -4,6 +4,7 @@
 #include "reference/sampling.h"
 #include "reference/surface_sample.h"
 #include "shared/ggx.h"
+#include "shared/ray.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,6 +33,7 @@ void checkGatherInputs(const GatherInputs& inputs, bool material) {
     };
     check(inputs.position, "position", 3);
     check(inputs.normal, "normal", 3);
+    if (!inputs.faceNormal.empty()) check(inputs.faceNormal, "face normal", 3);
     if (material) {
         check(inputs.albedo, "albedo", 3);
         check(inputs.material, "material", 3);
@@ -42,9 +44,9 @@ void checkGatherInputs(const GatherInputs& inputs, bool material) {
 // A pixel that light is gathered for, and the half of its samples that is drawn.
 struct GatherPoint {
     int x, y;
-    glm::vec3 position, normal; // unit
-    glm::vec3 origin;           // off the surface
-    std::uint32_t seed;         // of the pixel and half
+    glm::vec3 position, normal, face; // unit
+    glm::vec3 origin;                 // off the face
+    std::uint32_t seed;               // of the pixel and half
 };
 
 // What the rays of one row need, used again from pixel to pixel.
@@ -110,8 +112,9 @@ public:
             if (settings_.emission) light += scratch.shares[i] * met.emission;
             const glm::vec3 share = scratch.shares[i] * met.albedo * (1 - met.metallic);
             const glm::vec3 origin = offSurface(met.position, met.faceNormal);
-            lights_.addPunctual(scratch.shadows, met.position, origin, met.normal, share);
-            lights_.addArea(scratch.shadows, met.position, origin, met.normal, share,
+            const LitPoint lit{met.position, origin, met.normal, met.faceNormal};
+            lights_.addPunctual(scratch.shadows, lit, share);
+            lights_.addArea(scratch.shadows, lit, share,
                             sobolPoint(static_cast<std::uint32_t>(i), point.seed ^ gatherSecondStep));
         }
         light += scratch.shadows.trace(scene_.tracer);
@@ -137,9 +140,10 @@ private:
     }
 
     [[nodiscard]] GatherPoint pointAt(int x, int y, size_t half) const {
-        GatherPoint point{x,  y, rgbAt(inputs_.position, x, y), glm::normalize(rgbAt(inputs_.normal, x, y)),
-                          {}, 0};
-        point.origin = offSurface(point.position, point.normal);
+        const glm::vec3 normal = glm::normalize(rgbAt(inputs_.normal, x, y));
+        GatherPoint point{x, y, rgbAt(inputs_.position, x, y), normal, normal, {}, 0};
+        if (!inputs_.faceNormal.empty()) point.face = glm::normalize(rgbAt(inputs_.faceNormal, x, y));
+        point.origin = offSurface(point.position, point.face);
         // Apart from those of ambient occlusion.
         const auto dimension = shared::randomReference + 16 + static_cast<std::uint32_t>(half);
         point.seed = shared::pixelSeed(glm::uvec2(x, y), dimension, settings_.seed);
@@ -187,7 +191,9 @@ GatherResult gatherIndirectDiffuse(const GatherScene& scene, const GatherInputs&
         const glm::mat3 basis = basisAround(point.normal);
         scratch.rays.clear();
         gathering.forEachSample(point, [&](const glm::vec2& u) {
-            scratch.rays.push_back({point.origin, basis * cosineDirection(u), 0, settings.maximumDistance});
+            const glm::vec3 direction = basis * cosineDirection(u);
+            if (shared::leavesFace(direction, point.face))
+                scratch.rays.push_back({point.origin, direction, 0, settings.maximumDistance});
         });
         scratch.shares.assign(scratch.rays.size(), glm::vec3(1));
         return glm::vec4(gathering.arriving(point, scratch), 1);
@@ -201,8 +207,8 @@ GatherResult gatherSoftShadow(const GatherScene& scene, const GatherInputs& inpu
     return gathering.run([&](const GatherPoint& point, GatherScratch& scratch) {
         scratch.shadows.clear();
         gathering.forEachSample(point, [&](const glm::vec2& u) {
-            gathering.lights().addArea(scratch.shadows, point.position, point.origin, point.normal,
-                                       glm::vec3(1), u);
+            gathering.lights().addArea(
+                scratch.shadows, {point.position, point.origin, point.normal, point.face}, glm::vec3(1), u);
         });
         glm::vec3 unshadowed(0);
         const glm::vec3 arrives = scratch.shadows.trace(scene.tracer, &unshadowed);
@@ -231,9 +237,9 @@ GatherResult gatherGlossyReflection(const GatherScene& scene, const GatherInputs
             gathering.forEachSample(point, [&](const glm::vec2& u) {
                 const glm::vec3 facet = shared::ggxVisibleNormal(view, alpha, u);
                 const glm::vec3 leaving = 2 * glm::dot(view, facet) * facet - view;
-                if (!(leaving.z > 0)) return;
-                scratch.rays.push_back(
-                    {point.origin, glm::normalize(basis * leaving), 0, settings.maximumDistance});
+                const glm::vec3 direction = glm::normalize(basis * leaving);
+                if (!(leaving.z > 0) || !shared::leavesFace(direction, point.face)) return;
+                scratch.rays.push_back({point.origin, direction, 0, settings.maximumDistance});
                 scratch.shares.push_back(shared::schlickFresnel(f0, glm::dot(view, facet)) *
                                          shared::ggxShadowing(view.z, leaving.z, alpha));
             });

@@ -13,10 +13,11 @@ namespace kestrel {
 
 // Images of one size, rows in any order (the result has the same).
 struct GatherInputs {
-    Image position; // 3 or 4 channels: render space
-    Image normal;   // 3 or 4: unit; zero where there is no geometry
-    Image albedo;   // 3 or 4, for glossy reflection: linear base colour
-    Image material; // 2 to 4, for glossy reflection: roughness, metallic, unlit if above 0.5
+    Image position;   // 3 or 4 channels: render space
+    Image normal;     // 3 or 4: unit; zero where there is no geometry
+    Image faceNormal; // 3 or 4: the surface itself, unit, on the same side; empty: the same as `normal`
+    Image albedo;     // 3 or 4, for glossy reflection: linear base colour
+    Image material;   // 2 to 4, for glossy reflection: roughness, metallic, unlit if above 0.5
 };
 
 struct GatherSettings {
@@ -26,7 +27,7 @@ struct GatherSettings {
     float maximumDistance = std::numeric_limits<float>::infinity(); // surfaces farther away are not met
     bool emission = false;    // emissive surfaces send out their emission too
     glm::vec3 environment{0}; // radiance that arrives where nothing is met
-    // How far a ray starts off the surface along the normal, relative to the largest of the position's
+    // How far a ray starts off the surface along the face normal, relative to the largest of the position's
     // components and the radius of the geometry's bounds: above the rounding of a position that went through
     // a depth buffer.
     float relativeOffset = 0x1p-15f;
@@ -51,7 +52,8 @@ struct GatherScene {
 };
 
 // All results are functions of scene, inputs and settings but threads (scrambled Sobol points, a scramble for
-// each pixel and half). They throw InputError if the images do not fit.
+// each pixel and half). Nothing arrives at a point, first or second, from below its face (leavesFace() of
+// shared/ray.h). They throw InputError if the images do not fit.
 
 // The cosine-weighted mean of the radiance that arrives (irradiance over pi) after one bounce. A surface that
 // is met sends out its diffuse albedo (base colour times one minus metallic) times the irradiance over pi

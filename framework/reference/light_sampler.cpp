@@ -1,4 +1,5 @@
 #include "reference/light_sampler.h"
+#include "shared/ray.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,7 +36,7 @@ float spotWindow(const LightState& light, const glm::vec3& toLight) {
 glm::vec3 ShadowRays::trace(const ReferenceTracer& tracer, glm::vec3* unshadowed) {
     blocked_.assign(rays.size(), 0);
     tracer.anyHits(rays, blocked_);
-    glm::vec3 arrives(0), all(0);
+    glm::vec3 arrives(0), all = below;
     for (size_t i = 0; i < rays.size(); ++i) {
         all += light[i];
         if (blocked_[i] == 0) arrives += light[i];
@@ -51,34 +52,37 @@ LightSampler::LightSampler(std::span<const LightState> lights, const Geometry& g
         if (light.kind != LightKind::Rectangle && light.kind != LightKind::Sphere) punctual_.push_back(light);
 }
 
-void LightSampler::addPunctual(ShadowRays& to, const glm::vec3& position, const glm::vec3& origin,
-                               const glm::vec3& normal, const glm::vec3& scale) const {
+void LightSampler::addPunctual(ShadowRays& to, const LitPoint& point, const glm::vec3& scale) const {
     constexpr float inversePi = 1 / std::numbers::pi_v<float>;
     for (const LightState& light : punctual_) {
         if (light.kind == LightKind::Directional) {
-            const float cosine = -glm::dot(normal, light.direction);
-            if (cosine > 0)
-                to.add({origin, -light.direction, 0, std::numeric_limits<float>::infinity()},
+            const float cosine = -glm::dot(point.normal, light.direction);
+            if (cosine > 0 && shared::leavesFace(-light.direction, point.faceNormal))
+                to.add({point.origin, -light.direction, 0, std::numeric_limits<float>::infinity()},
                        scale * light.intensity * (cosine * inversePi));
             continue;
         }
-        const glm::vec3 way = light.position - position;
+        const glm::vec3 way = light.position - point.position;
         const float distance = glm::length(way);
         if (!(distance > 0)) continue;
         const glm::vec3 direction = way / distance;
-        float share = glm::dot(normal, direction) * rangeWindow(distance, light.range);
+        float share = glm::dot(point.normal, direction) * rangeWindow(distance, light.range);
         if (light.kind == LightKind::Spot) share *= spotWindow(light, direction);
-        if (share > 0)
-            to.add(rayTo(origin, light.position),
+        if (share > 0 && shared::leavesFace(direction, point.faceNormal))
+            to.add(rayTo(point.origin, light.position),
                    scale * light.intensity * (share * inversePi) / distance / distance);
     }
 }
 
-void LightSampler::addArea(ShadowRays& to, const glm::vec3& position, const glm::vec3& origin,
-                           const glm::vec3& normal, const glm::vec3& scale, const glm::vec2& u) const {
-    const EmitterSample sample = sampleEmitters(emitters_, position, normal, u);
-    if (luminance(sample.light) > 0)
-        to.add(rayTo(origin, position + sample.distance * sample.direction), scale * sample.light);
+void LightSampler::addArea(ShadowRays& to, const LitPoint& point, const glm::vec3& scale,
+                           const glm::vec2& u) const {
+    const EmitterSample sample = sampleEmitters(emitters_, point.position, point.normal, u);
+    if (!(luminance(sample.light) > 0)) return;
+    if (shared::leavesFace(sample.direction, point.faceNormal))
+        to.add(rayTo(point.origin, point.position + sample.distance * sample.direction),
+               scale * sample.light);
+    else
+        to.below += scale * sample.light;
 }
 
 } // namespace kestrel

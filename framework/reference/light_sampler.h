@@ -8,13 +8,20 @@
 
 namespace kestrel {
 
+// Where light falls on. Normals are unit; `origin` is `position` moved off the face.
+struct LitPoint {
+    glm::vec3 position, origin, normal, faceNormal;
+};
+
 // Shadow rays with what each brings if nothing blocks it, traced together.
 struct ShadowRays {
     std::vector<TraceRay> rays;
     std::vector<glm::vec3> light;
+    glm::vec3 below{0}; // what comes from below the face: blocked by the surface itself, not traced
     void clear() {
         rays.clear();
         light.clear();
+        below = glm::vec3(0);
     }
     void add(const TraceRay& ray, const glm::vec3& brings) {
         rays.push_back(ray);
@@ -34,13 +41,10 @@ public:
                  bool emissiveMeshes);
 
     // Point, spot and directional lights as KHR_lights_punctual has them: inverse square, cone, range window.
-    // A ray each that brings its irradiance over pi, times `scale`. `origin` is `position` moved off the
-    // surface.
-    void addPunctual(ShadowRays& to, const glm::vec3& position, const glm::vec3& origin,
-                     const glm::vec3& normal, const glm::vec3& scale) const;
+    // A ray each that brings its irradiance over pi, times `scale`.
+    void addPunctual(ShadowRays& to, const LitPoint& point, const glm::vec3& scale) const;
     // One point of the area emitters, by `u` uniform in [0, 1)^2.
-    void addArea(ShadowRays& to, const glm::vec3& position, const glm::vec3& origin, const glm::vec3& normal,
-                 const glm::vec3& scale, const glm::vec2& u) const;
+    void addArea(ShadowRays& to, const LitPoint& point, const glm::vec3& scale, const glm::vec2& u) const;
     [[nodiscard]] const std::vector<AreaEmitter>& emitters() const { return emitters_; }
 
 private:

@@ -1,4 +1,5 @@
 #include "ray_ambient_occlusion.h"
+#include "draw/face_input.h"
 #include "draw/ray_steps.h"
 #include "execute/commands.h"
 
@@ -10,6 +11,9 @@ PassType RayAmbientOcclusion::type() {
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
         .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
+        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
         .carries(content::normal)
         .sameExtentAs("depth")
         .input("tracer", PortKind::Tracer, "Who answers the visibility queries")
@@ -65,6 +69,7 @@ Declaration RayAmbientOcclusion::declare(const World& world, const Inputs& input
             if (!weighted) declaration.outputs.push_back(weight);
         }
     }
+    useFaceNormal(declaration, step, inputs);
     declaration.steps = raySteps(std::move(step), rays, world.facts);
     declaration.depends = Causes::Frame;
     return declaration;

@@ -19,8 +19,9 @@ const Target targets[] = {
      "Distance along the view axis in scene units; 0 where nothing is"},
     {"normal", "OUT_NORMAL", Format::RGBA16F, content::normal,
      "Shading normal, unit, towards the eye, render space; 0 where nothing is"},
-    {"face_normal", "OUT_FACE_NORMAL", Format::RGBA16F, content::normal,
-     "Normal of the triangle, unit, towards the eye, render space"},
+    // Rays are held above the face: half floats are off by what a grazing ray needs to meet its own triangle.
+    {"face_normal", "OUT_FACE_NORMAL", Format::RGBA32F, content::normal,
+     "Normal of the triangle, unit, towards the eye, render space; 0 where nothing is"},
     {"position", "OUT_POSITION", Format::RGBA32F, content::position,
      "Render-space position; w is 1 where there is geometry"},
     {"albedo", "OUT_ALBEDO", Format::RGBA16F, content::colour,

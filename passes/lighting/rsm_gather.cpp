@@ -1,4 +1,5 @@
 #include "rsm_gather.h"
+#include "draw/face_input.h"
 
 namespace kestrel {
 namespace {
@@ -22,6 +23,9 @@ PassType RsmGather::type() {
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
         .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
+        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
         .carries(content::normal)
         .sameExtentAs("depth")
         .input("maps", PortKind::Buffer, "How the maps lie, and the lights")
@@ -73,6 +77,7 @@ Declaration RsmGather::declare(const World& world, const Inputs& inputs, const D
                        {.port = "map_position", .access = Access::Image},
                        {.port = "result", .access = Access::Image, .write = true}},
               .group = "gathering"};
+    useFaceNormal(declaration, step, inputs);
     step.defines["SAMPLES"] = std::to_string(samples);
     if (rotate) {
         step.defines.emplace("ROTATE", "1");

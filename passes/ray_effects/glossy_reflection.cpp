@@ -1,4 +1,5 @@
 #include "glossy_reflection.h"
+#include "draw/face_input.h"
 #include "draw/ray_steps.h"
 #include "execute/commands.h"
 
@@ -10,6 +11,9 @@ PassType GlossyReflection::type() {
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
         .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
+        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
         .carries(content::normal)
         .sameExtentAs("depth")
         .input("albedo", PortKind::Texture, "Their linear base colour")
@@ -57,6 +61,7 @@ Declaration GlossyReflection::declare(const World& world, const Inputs& inputs, 
                  {.port = "result", .access = Access::Image, .write = true}},
         .modules = {{"tracer", requests::ClosestHit | (surfaces ? requests::Surface : 0)}, {"radiance", 0}}};
     if (surfaces) step.defines.emplace("REQUIRES_SURFACE", "1");
+    useFaceNormal(declaration, step, inputs);
     declaration.steps = raySteps(std::move(step), rays, world.facts);
     declaration.depends = Causes::Frame;
     return declaration;

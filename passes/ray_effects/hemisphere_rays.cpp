@@ -1,4 +1,5 @@
 #include "hemisphere_rays.h"
+#include "draw/face_input.h"
 #include "execute/commands.h"
 #include "shared/ray.h"
 
@@ -10,6 +11,9 @@ PassType HemisphereRays::type() {
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
         .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
+        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
         .carries(content::normal)
         .sameExtentAs("depth")
         .output("rays", PortKind::Buffer, "One record a pixel in rows from the bottom (shared/ray.h)")
@@ -24,12 +28,14 @@ Declaration HemisphereRays::declare(const World&, const Inputs& inputs, const De
     const std::uint64_t pixels = std::uint64_t{extent.width} * extent.height;
     declaration.outputs.push_back(
         {.port = "rays", .desc = Desc::buffer(pixels * sizeof(shared::RayRecord), Format::RGBA32UI)});
-    declaration.steps.push_back({.name = "generate",
-                                 .shaders = {"ray_effects/hemisphere_rays.comp"},
-                                 .uses = {{.port = "depth", .access = Access::Fetch},
-                                          {.port = "normal", .access = Access::Image},
-                                          {.port = "rays", .access = Access::Storage, .write = true}},
-                                 .group = "rays"});
+    Step step{.name = "generate",
+              .shaders = {"ray_effects/hemisphere_rays.comp"},
+              .uses = {{.port = "depth", .access = Access::Fetch},
+                       {.port = "normal", .access = Access::Image},
+                       {.port = "rays", .access = Access::Storage, .write = true}},
+              .group = "rays"};
+    useFaceNormal(declaration, step, inputs);
+    declaration.steps.push_back(std::move(step));
     declaration.depends = Causes::Frame | Causes::Properties;
     return declaration;
 }

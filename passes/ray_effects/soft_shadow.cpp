@@ -1,4 +1,5 @@
 #include "soft_shadow.h"
+#include "draw/face_input.h"
 #include "draw/ray_steps.h"
 #include "execute/commands.h"
 #include "shared/emitter.h"
@@ -44,6 +45,9 @@ PassType SoftShadow::type() {
         .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
         .carries(content::depth)
         .input("normal", PortKind::Texture, "Their normals, unit, render space")
+        .carries(content::normal)
+        .sameExtentAs("depth")
+        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
         .carries(content::normal)
         .sameExtentAs("depth")
         .input("tracer", PortKind::Tracer, "Who answers the visibility queries")
@@ -126,6 +130,7 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
     if (meshes || rectangles) step.defines.emplace("FLAT_EMITTERS", "1");
     if (spheres) step.defines.emplace("SPHERE_EMITTERS", "1");
     if (approximate) step.defines.emplace("APPROXIMATE", "1");
+    useFaceNormal(declaration, step, inputs);
     std::vector<Step> steps = raySteps(std::move(step), rays, world.facts);
     if (tellsVisibility) { // of the sums of all steps
         steps.back().defines.emplace("VISIBILITY", "1");

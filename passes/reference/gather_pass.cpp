@@ -1,4 +1,5 @@
 #include "gather_pass.h"
+#include "draw/face_input.h"
 #include "execute/commands.h"
 
 namespace kestrel {
@@ -21,6 +22,7 @@ Declaration declareGather(const Inputs& inputs, const std::vector<std::string>& 
         declaration.leftOut.push_back({"tracing", empty ? "there is nothing in view" : leftOut});
         return declaration;
     }
+    useFaceNormal(declaration, step, inputs, Access::Host);
     declaration.steps.push_back(std::move(step));
     declaration.depends =
         Causes::Geometry | Causes::Transforms | Causes::Materials | Causes::Lights | Causes::Properties;
@@ -36,11 +38,12 @@ GatherSettings gatherSettings(Commands& commands, int samples, float distance) {
     return settings;
 }
 
-GatherInputs gatherInputs(Commands& commands) {
-    return {.position = commands.downloadImage("position"),
-            .normal = commands.downloadImage("normal"),
-            .albedo = {},
-            .material = {}};
+GatherInputs gatherInputs(const Step& step, Commands& commands) {
+    GatherInputs inputs;
+    inputs.position = commands.downloadImage("position");
+    inputs.normal = commands.downloadImage("normal");
+    if (usesFaceNormal(step)) inputs.faceNormal = commands.downloadImage("face_normal");
+    return inputs;
 }
 
 void finishGather(Commands& commands, const GatherResult& result) {

@@ -1,4 +1,5 @@
 #include "reference_ambient_occlusion.h"
+#include "draw/face_input.h"
 #include "execute/commands.h"
 #include "reference/ambient_occlusion.h"
 
@@ -10,6 +11,9 @@ PassType ReferenceAmbientOcclusion::type() {
         .input("position", PortKind::Texture, "Render-space positions of the surfaces")
         .carries(content::position)
         .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .carries(content::normal)
+        .sameExtentAs("position")
+        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
         .carries(content::normal)
         .sameExtentAs("position")
         .output("visibility", PortKind::Texture,
@@ -32,27 +36,29 @@ Declaration ReferenceAmbientOcclusion::declare(const World&, const Inputs& input
         return declaration;
     }
     declaration.outputs.push_back(std::move(visibility));
-    declaration.steps.push_back({.name = "trace",
-                                 .uses = {{.port = "position", .access = Access::Host},
-                                          {.port = "normal", .access = Access::Host},
-                                          {.port = "visibility", .access = Access::Copy, .write = true}},
-                                 .group = "reference"});
+    Step step{.name = "trace",
+              .uses = {{.port = "position", .access = Access::Host},
+                       {.port = "normal", .access = Access::Host},
+                       {.port = "visibility", .access = Access::Copy, .write = true}},
+              .group = "reference"};
+    useFaceNormal(declaration, step, inputs, Access::Host);
+    declaration.steps.push_back(std::move(step));
     declaration.depends = Causes::Geometry | Causes::Transforms | Causes::Materials | Causes::Properties;
     return declaration;
 }
 
-void ReferenceAmbientOcclusion::execute(const Step&, Commands& commands) {
+void ReferenceAmbientOcclusion::execute(const Step& step, Commands& commands) {
     const ReferenceTracer tracer(commands.geometry(), commands.scene());
     OcclusionSettings settings;
     settings.samples = samples;
     if (distance > 0) settings.maximumDistance = distance;
     settings.seed = commands.frame().seed;
     settings.progress = [&](double fraction) { commands.progress(fraction); };
-    const OcclusionResult result = ambientOcclusion(tracer,
-                                                    {.position = commands.downloadImage("position"),
-                                                     .normal = commands.downloadImage("normal"),
-                                                     .faceNormal = {}},
-                                                    settings);
+    OcclusionInputs inputs{.position = commands.downloadImage("position"),
+                           .normal = commands.downloadImage("normal"),
+                           .faceNormal = {}};
+    if (usesFaceNormal(step)) inputs.faceNormal = commands.downloadImage("face_normal");
+    const OcclusionResult result = ambientOcclusion(tracer, inputs, settings);
     commands.uploadImage("visibility", result.visibility);
     commands.report("noise", result.noise);
     commands.report("rays", static_cast<double>(result.rays));

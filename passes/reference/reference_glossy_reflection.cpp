@@ -1,4 +1,5 @@
 #include "reference_glossy_reflection.h"
+#include "draw/face_input.h"
 #include "execute/commands.h"
 #include "gather_pass.h"
 
@@ -11,6 +12,9 @@ PassType ReferenceGlossyReflection::type() {
         .input("position", PortKind::Texture, "Render-space positions of the surfaces")
         .carries(content::position)
         .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .carries(content::normal)
+        .sameExtentAs("position")
+        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
         .carries(content::normal)
         .sameExtentAs("position")
         .input("albedo", PortKind::Texture, "Their linear base colour")
@@ -37,11 +41,11 @@ Declaration ReferenceGlossyReflection::declare(const World&, const Inputs& input
     return declaration;
 }
 
-void ReferenceGlossyReflection::execute(const Step&, Commands& commands) {
+void ReferenceGlossyReflection::execute(const Step& step, Commands& commands) {
     GatherSettings settings = gatherSettings(commands, samples, distance);
     settings.emission = emission;
     settings.environment = environment;
-    GatherInputs inputs = gatherInputs(commands);
+    GatherInputs inputs = gatherInputs(step, commands);
     inputs.albedo = commands.downloadImage("albedo");
     inputs.material = commands.downloadImage("material");
     const ReferenceTracer tracer(commands.geometry(), commands.scene());

@@ -1,4 +1,5 @@
 #include "reference_indirect_diffuse.h"
+#include "draw/face_input.h"
 #include "execute/commands.h"
 #include "gather_pass.h"
 
@@ -10,6 +11,9 @@ PassType ReferenceIndirectDiffuse::type() {
         .input("position", PortKind::Texture, "Render-space positions of the surfaces")
         .carries(content::position)
         .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .carries(content::normal)
+        .sameExtentAs("position")
+        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
         .carries(content::normal)
         .sameExtentAs("position")
         .output("result", PortKind::Texture,
@@ -34,13 +38,13 @@ Declaration ReferenceIndirectDiffuse::declare(const World&, const Inputs& inputs
     return declaration;
 }
 
-void ReferenceIndirectDiffuse::execute(const Step&, Commands& commands) {
+void ReferenceIndirectDiffuse::execute(const Step& step, Commands& commands) {
     GatherSettings settings = gatherSettings(commands, samples, distance);
     settings.emission = emission;
     settings.environment = environment;
     const ReferenceTracer tracer(commands.geometry(), commands.scene());
     const GatherScene scene{tracer, commands.geometry(), commands.scene(), commands.lights()};
-    finishGather(commands, gatherIndirectDiffuse(scene, gatherInputs(commands), settings));
+    finishGather(commands, gatherIndirectDiffuse(scene, gatherInputs(step, commands), settings));
 }
 
 } // namespace kestrel

@@ -1,4 +1,5 @@
 #include "reference_soft_shadow.h"
+#include "draw/face_input.h"
 #include "execute/commands.h"
 #include "gather_pass.h"
 
@@ -11,6 +12,9 @@ PassType ReferenceSoftShadow::type() {
         .input("position", PortKind::Texture, "Render-space positions of the surfaces")
         .carries(content::position)
         .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .carries(content::normal)
+        .sameExtentAs("position")
+        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
         .carries(content::normal)
         .sameExtentAs("position")
         .output("result", PortKind::Texture, "Irradiance over pi that arrives; 0 where nothing is")
@@ -34,12 +38,12 @@ Declaration ReferenceSoftShadow::declare(const World& world, const Inputs& input
     return declaration;
 }
 
-void ReferenceSoftShadow::execute(const Step&, Commands& commands) {
+void ReferenceSoftShadow::execute(const Step& step, Commands& commands) {
     GatherSettings settings = gatherSettings(commands, samples, 0);
     settings.emission = emission;
     const ReferenceTracer tracer(commands.geometry(), commands.scene());
     const GatherScene scene{tracer, commands.geometry(), commands.scene(), commands.lights()};
-    const GatherResult result = gatherSoftShadow(scene, gatherInputs(commands), settings);
+    const GatherResult result = gatherSoftShadow(scene, gatherInputs(step, commands), settings);
     finishGather(commands, result);
     commands.uploadImage("visibility", result.visibility);
 }

@@ -5,11 +5,12 @@
 // the mean cosine of the stratum, 0 below the horizon. COSINE_RATIO forms sum(w V) / sum(w); the paper's estimator
 // counts every candidate above the horizon alike. Both are ratios, so an open plane gives 1 exactly; the first is free
 // of the correlation between cosine and visibility within a stratum (a bias of the second that grows with the stratum).
+// What points below the face is occluded by it.
 #include "lib/frame.glsl"
 #include "lib/view.glsl"
 #include "lib/sampling.glsl"
 #include "shared/random.h"
-#include "lib/tracer.glsl"
+#include "lib/face.glsl"
 #include "lib/iterations.glsl"
 #include <port:tracer>
 
@@ -32,6 +33,7 @@ void main() {
     vec3 n = imageLoad(normal, pixel).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
+    vec3 face = faceAt(pixel, n);
     vec3 origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
     uint seed = pixelSeed(uvec2(pixel), randomRayDirection, frame.seed);
 
@@ -48,7 +50,9 @@ void main() {
 #else
         float w = ray.weight > 0.0 ? 1.0 : 0.0;
 #endif
-        if (!tracer_anyHit(ray)) open += w;
+        bool leaves = leaveFace(ray, face);
+        bool met = tracer_anyHit(ray);
+        if (leaves && !met) open += w;
         sum += w;
     }
     ITERATIONS_END;

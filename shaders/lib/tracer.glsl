@@ -13,7 +13,9 @@
 
 struct Ray {
     vec3 origin;    // on a surface: the surface point itself; each tracer moves it off by its own measure
-    vec3 normal;    // geometric normal at the origin, on the side the ray leaves to; zero if there is no surface
+    // Unit, on the side the ray leaves to; zero if there is no surface. For aim the axis of the cosine that the direction was
+    // drawn with; for the queries the normal of the face, along which tracers move the origin (lib/face.glsl).
+    vec3 normal;
     vec3 direction; // unit; aim may replace it by a nearby one where the consumer bears snapping (REQUESTS_SNAP)
     float tMin;
     float tMax;     // rayInfinity: unbounded

@@ -5,6 +5,7 @@
 #include "lib/lights.glsl"
 #include "lib/light_shadow.glsl"
 #include "lib/sampling.glsl"
+#include "shared/ray.h"
 
 layout(std140) uniform M(Maps) {
     LightMapCounts M(counts);
@@ -23,7 +24,8 @@ vec3 M(punctual)(uint slot, Surface at) {
     vec3 toLight;
     float distanceToLight;
     vec3 arriving = punctualLight(M(lights)[slot], at.position, toLight, distanceToLight);
-    return arriving * (max(0.0, dot(at.shadingNormal, toLight)) * VISIBLE(slot, at));
+    float cosine = leavesFace(toLight, at.normal) ? max(0.0, dot(at.shadingNormal, toLight)) : 0.0;
+    return arriving * (cosine * VISIBLE(slot, at));
 }
 
 vec3 M(irradiance)(Surface at) {

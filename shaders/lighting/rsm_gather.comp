@@ -8,6 +8,7 @@
 // light dw is du dv / (1 + u^2 + v^2)^(3/2). Its form factor is that of a disk (Wallace, Elmquist and
 // Haines, "A Ray Tracing Algorithm for Progressive Radiosity", 1989), which stays finite where surfaces meet.
 #include "lib/frame.glsl"
+#include "lib/face.glsl"
 #include "lib/light_maps.glsl"
 #include "lib/sampling.glsl"
 #include "lib/view.glsl"
@@ -29,7 +30,7 @@ layout(std140) uniform Maps {
 };
 uniform float radius;
 
-vec3 position, n;
+vec3 position, n, face;
 
 // Irradiance over pi from one map.
 vec3 gathered(uint slot, uint seed, uint first) {
@@ -81,7 +82,7 @@ vec3 gathered(uint slot, uint seed, uint first) {
         vec3 toLamp = d2 > 0.0 ? to * inversesqrt(d2) : vec3(0.0);
         float cosines = max(0.0, dot(n, toLamp)) * max(0.0, -dot(lamp.xyz, toLamp));
         float factor = area * cosines / max(pi * d2 + spread * texelArea, 1e-37);
-        sum += exists && place.inside && from.w > 0.0 ? radiance * factor : vec3(0.0);
+        sum += exists && leavesFace(toLamp, face) && place.inside && from.w > 0.0 ? radiance * factor : vec3(0.0);
     }
     return sum / float(SAMPLES);
 }
@@ -93,6 +94,7 @@ void main() {
     n = texelFetch(normal, pixel, 0).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
+    face = faceAt(pixel, n);
     position = positionFromDepth(depthView, vec2(pixel) + 0.5, background ? 1.0 : z);
 #ifdef ROTATE
     uint seed = pixelSeed(uvec2(pixel), randomGather, frame.seed);

@@ -5,7 +5,7 @@
 #include "lib/sampling.glsl"
 #include "shared/random.h"
 #include "shared/ggx.h"
-#include "lib/tracer.glsl"
+#include "lib/face.glsl"
 #include "lib/radiance.glsl"
 #include "lib/iterations.glsl"
 #include <port:tracer>
@@ -30,6 +30,7 @@ void main() {
     vec3 n = imageLoad(normal, pixel).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
+    vec3 face = faceAt(pixel, n);
     vec3 origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
     vec3 surface = texelFetch(material, pixel, 0).xyz;
     bool traced = !background && surface.x <= maximumRoughness && surface.z < 0.5;
@@ -50,6 +51,7 @@ void main() {
         Ray ray = surfaceRay(origin, n, normalize(frameOfNormal * leaving));
         if (maximumDistance > 0.0) ray.tMax = maximumDistance;
         tracer_aim(ray);
+        up = leaveFace(ray, face) && up;
         if (!up) ray.tMax = -1.0; // an empty interval: no tracer walks it
         Hit hit;
         vec3 arriving;

@@ -1,9 +1,10 @@
 // The first ray of each pixel of RayAmbientOcclusion, bit for bit, so that their results can be compared ray by ray.
+// One that would not leave its face does not exist.
 #include "lib/frame.glsl"
 #include "lib/view.glsl"
 #include "lib/sampling.glsl"
 #include "shared/random.h"
-#include "shared/ray.h"
+#include "lib/face.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -22,10 +23,13 @@ void main() {
     vec3 n = imageLoad(normal, pixel).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
+    vec3 face = faceAt(pixel, n);
     vec2 u = scrambledSobol(frame.index, pixelSeed(uvec2(pixel), randomRayDirection, frame.seed));
     float tMax = maximumDistance > 0.0 ? maximumDistance : uintBitsToFloat(0x7f800000u);
     int at = 3 * (pixel.y * size.x + pixel.x);
     rays[at] = vec4(positionFromDepth(depthView, vec2(pixel) + 0.5, z), 0.0);
-    rays[at + 1] = vec4(cosineHemisphere(u, n), tMax);
-    rays[at + 2] = vec4(n, uintBitsToFloat(background ? 0u : 1u));
+    vec3 direction = cosineHemisphere(u, n);
+    bool exists = !background && leavesFace(direction, face);
+    rays[at + 1] = vec4(direction, tMax);
+    rays[at + 2] = vec4(face, uintBitsToFloat(exists ? 1u : 0u));
 }

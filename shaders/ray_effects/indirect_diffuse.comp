@@ -5,7 +5,7 @@
 #include "lib/view.glsl"
 #include "lib/sampling.glsl"
 #include "shared/random.h"
-#include "lib/tracer.glsl"
+#include "lib/face.glsl"
 #include "lib/radiance.glsl"
 #include "lib/iterations.glsl"
 #include <port:tracer>
@@ -30,6 +30,7 @@ void main() {
     vec3 n = imageLoad(normal, pixel).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
+    vec3 face = faceAt(pixel, n);
     vec3 origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
     uint seed = pixelSeed(uvec2(pixel), randomIndirect, frame.seed);
 
@@ -47,6 +48,7 @@ void main() {
 #else
         float w = ray.weight > 0.0 ? 1.0 : 0.0;
 #endif
+        bool leaves = leaveFace(ray, face);
         if (background || w == 0.0) ray.tMax = -1.0; // an empty interval: no tracer walks it
         Hit hit;
         vec3 arriving;
@@ -59,7 +61,7 @@ void main() {
         } else {
             arriving = radiance_miss(ray.direction);
         }
-        light += w * arriving;
+        if (leaves) light += w * arriving;
         sum += w;
     }
     ITERATIONS_END;

@@ -5,7 +5,7 @@
 #include "lib/sampling.glsl"
 #include "shared/random.h"
 #include "shared/emitter.h"
-#include "lib/tracer.glsl"
+#include "lib/face.glsl"
 #include "lib/iterations.glsl"
 #include <port:tracer>
 
@@ -150,6 +150,7 @@ void main() {
     vec3 n = texelFetch(normal, pixel, 0).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
+    vec3 face = faceAt(pixel, n);
     vec3 origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
     uint seed = pixelSeed(uvec2(pixel), randomShadow, frame.seed);
 
@@ -165,7 +166,9 @@ void main() {
         Ray ray = surfaceRay(origin, n, point.direction);
         ray.tMax = some ? shortOfTheLight * point.distance : -1.0; // an empty interval: no tracer walks it
         tracer_aim(ray);
-        bool arrives = !isShadowed(ray, point);
+        bool leaves = leaveFace(ray, face); // else the surface itself is in the way
+        bool shadowed = isShadowed(ray, point);
+        bool arrives = leaves && !shadowed;
         if (some && arrives) light += point.light;
         if (some && !arrives) blocked += bright;
     }

@@ -7,7 +7,7 @@
 namespace kestrel::test {
 
 inline const PortRef bounce{"bounce", "result"}, shadowed{"lit", "result"}, shine{"shine", "result"},
-    openness{"open", "result"};
+    openness{"open", "result"}, skyVisible{"seen", "result"};
 
 // By BVH, with light from `direct` unless `settings` say otherwise.
 inline Graph effectsGraph(const std::vector<PortRef>& outputs,
@@ -25,6 +25,9 @@ inline Graph effectsGraph(const std::vector<PortRef>& outputs,
             "indirect": { "type": "IndirectDiffuse", "properties": { "rays": 16 } },
             "shadow": { "type": "SoftShadow", "properties": { "rays": 16 } },
             "glossy": { "type": "GlossyReflection", "properties": { "rays": 16 } },
+            "ao": { "type": "RayAmbientOcclusion", "properties": { "rays": 16, "snap": false } },
+            "gather": { "type": "RsmGather" },
+            "seen": { "type": "Accumulate" },
             "bounce": { "type": "Accumulate" },
             "lit": { "type": "Accumulate" },
             "open": { "type": "Accumulate" },
@@ -33,17 +36,22 @@ inline Graph effectsGraph(const std::vector<PortRef>& outputs,
         "edges": [
             ["bom.occupancy", "roma.occupancy"], ["bom.grid", "roma.grid"],
             ["gbuffer.depth", "direct.depth"], ["gbuffer.normal", "direct.normal"],
-            ["gbuffer.depth", "indirect.depth"], ["gbuffer.normal", "indirect.normal"],
+            ["gbuffer.depth", "indirect.depth"], ["gbuffer.normal", "indirect.normal"], ["gbuffer.face_normal", "indirect.face_normal"],
             ["bvh.tracer", "indirect.tracer"], ["direct.radiance", "indirect.radiance"],
             ["indirect.result", "bounce.signal"], ["indirect.weight", "bounce.weight"],
-            ["gbuffer.depth", "shadow.depth"], ["gbuffer.normal", "shadow.normal"],
+            ["gbuffer.depth", "shadow.depth"], ["gbuffer.normal", "shadow.normal"], ["gbuffer.face_normal", "shadow.face_normal"],
             ["bvh.tracer", "shadow.tracer"],
             ["shadow.result", "lit.signal"], ["shadow.visibility", "open.signal"],
             ["shadow.weight", "open.weight"],
-            ["gbuffer.depth", "glossy.depth"], ["gbuffer.normal", "glossy.normal"],
+            ["gbuffer.depth", "glossy.depth"], ["gbuffer.normal", "glossy.normal"], ["gbuffer.face_normal", "glossy.face_normal"],
             ["gbuffer.albedo", "glossy.albedo"], ["gbuffer.material", "glossy.material"],
             ["bvh.tracer", "glossy.tracer"], ["direct.radiance", "glossy.radiance"],
-            ["glossy.result", "shine.signal"]
+            ["glossy.result", "shine.signal"],
+            ["gbuffer.depth", "ao.depth"], ["gbuffer.normal", "ao.normal"], ["gbuffer.face_normal", "ao.face_normal"], ["bvh.tracer", "ao.tracer"],
+            ["ao.visibility", "seen.signal"],
+            ["gbuffer.depth", "gather.depth"], ["gbuffer.normal", "gather.normal"], ["gbuffer.face_normal", "gather.face_normal"], ["rsm.maps", "gather.maps"],
+            ["rsm.map_radiance", "gather.map_radiance"], ["rsm.map_normal", "gather.map_normal"],
+            ["rsm.map_position", "gather.map_position"]
         ],
         "outputs": []
     })",

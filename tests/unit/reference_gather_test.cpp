@@ -3,10 +3,12 @@
 #include "core/version.h"
 #include "reference/area_emitters.h"
 #include "reference/gather.h"
+#include "reference/primary_hits.h"
 #include "reference/surface_sample.h"
 #include "shared/ggx.h"
 #include <cmath>
 #include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -89,7 +91,7 @@ Image row(const std::vector<glm::vec3>& values) {
 
 GatherInputs pointsFacing(const std::vector<glm::vec3>& positions, const glm::vec3& normal) {
     const std::vector<glm::vec3> normals(positions.size(), normal);
-    return {row(positions), row(normals), {}, {}};
+    return {row(positions), row(normals), {}, {}, {}};
 }
 
 struct LitWorld {
@@ -441,6 +443,68 @@ TEST_F(GatherNoise, DoesNotDependOnThreads) {
     EXPECT_EQ(one.light, world.bounce(inputs, settings).light);
     settings.seed = 1;
     EXPECT_NE(one.light, world.bounce(inputs, settings).light);
+}
+
+// The shading normal leans by 60 degrees: the share (1 + cos 60) / 2 of its cosine-weighted hemisphere is
+// above the face, and what is below it is the surface itself.
+TEST(ReferenceGather, NothingArrivesFromBelowTheFace) {
+    GATHER_NEEDS_EMBREE();
+    const glm::vec3 leaning(std::sqrt(0.75f), 0.5f, 0);
+    LitWorld world;
+    world.scene = materialsScene({matteOf(glm::vec3(0.5f), glm::vec3(1, 2, 3))});
+    addSquare(world.geometry, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+    GatherInputs inputs = pointsFacing({{0, 0, 0}}, leaning);
+    inputs.faceNormal = row({{0, 1, 0}});
+    GatherSettings settings;
+    settings.samples = 8192;
+    settings.emission = true;
+    settings.environment = {1, 2, 4};
+    const GatherResult bounce = world.bounce(inputs, settings);
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(bounce.light.at(0, 0, k), 0.75f * settings.environment[k],
+                    0.005f * settings.environment[k]);
+    // A lamp below the face, in front of the normal, brings nothing, and what it would bring is shadowed.
+    world.geometry = {};
+    addSquare(world.geometry, {9, 9, 9}, {0, 0, 1}, {1, 0, 0});
+    settings.emission = false;
+    LightState lamp = lightOf(LightKind::Sphere, {1, -0.2f, 0}, 1);
+    lamp.halfSize.x = 0.1f;
+    world.lights = {lamp};
+    const GatherResult below = world.shadow(inputs, settings);
+    EXPECT_EQ(below.light.at(0, 0, 0), 0.0f);
+    EXPECT_EQ(below.visibility.at(0, 0), 0.0f);
+    world.lights[0].position.y = 0.2f;
+    const GatherResult above = world.shadow(inputs, settings);
+    EXPECT_GT(above.light.at(0, 0, 0), 0.0f);
+    EXPECT_EQ(above.visibility.at(0, 0), 1.0f);
+}
+
+// A coarse ball with the normals of a round one: nothing that it sends out can come back.
+TEST(ReferenceGather, AConvexBodyAloneReceivesExactlyNothingOfItsOwnLight) {
+    GATHER_NEEDS_EMBREE();
+    LitWorld world;
+    world.scene = materialsScene({matteOf(glm::vec3(0.8f))});
+    addRoundRoom(world.geometry, 1, 5);
+    world.lights = {lightOf(LightKind::Directional, {}, 3)};
+    CameraState camera;
+    camera.view = glm::lookAt(glm::vec3(1, 2, 3), glm::vec3(0), glm::vec3(0, 1, 0));
+    camera.position = {1, 2, 3};
+    camera.nearPlane = 0.1f;
+    const ReferenceTracer tracer(world.geometry, world.scene);
+    const PrimaryHits seen = primaryHits(tracer, world.geometry, camera, 64, 64);
+    ASSERT_GT(std::count(seen.triangles.begin(), seen.triangles.end(), TraceHit::none), 500);
+    ASSERT_LT(std::count(seen.triangles.begin(), seen.triangles.end(), TraceHit::none), 3500);
+    GatherInputs inputs{seen.position, seen.normal, seen.faceNormal, Image(64, 64, 3, 0.8f),
+                        Image(64, 64, 3, 0.4f)};
+    const GatherScene scene{tracer, world.geometry, world.scene, world.lights};
+    for (const GatherResult& result :
+         {gatherIndirectDiffuse(scene, inputs, {}), gatherGlossyReflection(scene, inputs, camera, {})})
+        for (const float value : result.light.values) ASSERT_EQ(value, 0.0f);
+    // By the normals alone it does: that is what the face is for.
+    inputs.faceNormal = {};
+    double sum = 0;
+    for (const float value : gatherIndirectDiffuse(scene, inputs, {}).light.values) sum += double{value};
+    EXPECT_GT(sum, 0);
 }
 
 TEST(ReferenceGather, EmptyAndDegenerateScenes) {
