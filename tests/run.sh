@@ -4,8 +4,10 @@
 # tests/run.sh --stage NAME [CTEST ARGUMENT]... runs one of the further stages instead:
 #   format     every C++ file stands as .clang-format has it
 #   sanitize   the tests that need no GL, under the address and undefined-behaviour sanitizers
-#   strict     file by file, without precompiled headers, in the debug build that counts the iterations of shaders' loops
-#   tidy       clang-tidy over framework/ and passes/, by .clang-tidy (after strict)
+#   strict     every file by itself, without precompiled headers, also for names that hide others: it must include what it uses
+#   debug      the tests in the debug build, which counts the iterations of shaders' loops
+#   tidy       clang-tidy over framework/ and passes/, by .clang-tidy
+#   all        the tests and every stage
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 stage=tests
@@ -57,16 +59,29 @@ sanitize)
     done
     ;;
 strict)
-    build "$root/build-strict" -DKESTREL_CONFIG=debug -DKESTREL_UNITY=OFF -DKESTREL_PCH=OFF
-    run "$root/build-strict" "$@"
+    build "$root/build-strict" -DKESTREL_UNITY=OFF -DKESTREL_PCH=OFF -- kestrel_stamp kestrel_glad
+    python3 "$root/tests/strict.py" "$root/build-strict/compile_commands.json"
+    ;;
+debug)
+    build "$root/build-debug" -DKESTREL_CONFIG=debug -DKESTREL_UNITY=ON -DKESTREL_PCH=ON
+    run "$root/build-debug" -L 'unit|gl' "$@"
     ;;
 tidy)
+    # In the groups of a unity build: the headers, which are most of the work, are read once a group.
     "$root/apps/install.sh" stage
-    cd "$root"
-    git ls-files 'framework/*.cpp' 'passes/*.cpp' | xargs -P "$(nproc)" -n 4 clang-tidy --quiet -p "$root/build-strict"
+    build "$root/build-tidy" -DKESTREL_UNITY=ON -DKESTREL_PCH=OFF -- kestrel_stamp kestrel_glad
+    find "$root/build-tidy/framework" "$root/build-tidy/passes" -path '*/Unity/*.cxx' -print0 |
+        xargs -0 -P "$(nproc)" -n 1 clang-tidy --quiet -p "$root/build-tidy"
+    ;;
+all)
+    "$0"
+    for each in format strict sanitize debug tidy; do
+        echo "== $each"
+        "$0" --stage "$each"
+    done
     ;;
 *)
-    echo "tests/run.sh: there is no stage '$stage': format, sanitize, strict, tidy" >&2
+    echo "tests/run.sh: there is no stage '$stage': format, strict, sanitize, debug, tidy, all" >&2
     exit 2
     ;;
 esac

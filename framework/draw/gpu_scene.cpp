@@ -80,21 +80,38 @@ bool store(gl::Buffer& buffer, std::span<const std::byte> bytes, const char* lab
     return fresh;
 }
 
-// One texel a position.
-bool storePositions(gl::Buffer& buffer, const std::vector<glm::vec3>& positions, const char* label) {
-    std::vector<glm::vec4> texels(positions.size());
-    std::transform(positions.begin(), positions.end(), texels.begin(),
-                   [](const glm::vec3& position) { return glm::vec4(position, 1); });
-    return store(buffer, bytesOf(texels), label);
+// Of an array with one record an item: all of them into a new buffer where the size is another (true then),
+// else those of `ranges` alone, since no other has changed.
+template<class Record, class Item, class Make>
+bool storeItems(gl::Buffer& buffer, const std::vector<Item>& items,
+                const std::vector<Geometry::Range>& ranges, const char* label, const Make& make) {
+    const bool fresh = !buffer || buffer.bytes() != items.size() * sizeof(Record);
+    if (fresh) buffer = gl::Buffer(items.size() * sizeof(Record), label);
+    std::vector<Record> records;
+    const auto upload = [&](size_t first, size_t count) {
+        records.resize(count);
+        const auto from = items.begin() + static_cast<std::ptrdiff_t>(first);
+        std::transform(from, from + static_cast<std::ptrdiff_t>(count), records.begin(), make);
+        buffer.upload(bytesOf(records), first * sizeof(Record));
+    };
+    if (fresh) upload(0, items.size());
+    if (!fresh)
+        for (const Geometry::Range& range : ranges) upload(range.first, range.count);
+    return fresh;
 }
 
-bool storeVertices(gl::Buffer& buffer, const std::vector<VertexAttributes>& attributes) {
-    std::vector<VertexRecord> records(attributes.size());
-    std::transform(attributes.begin(), attributes.end(), records.begin(), [](const VertexAttributes& vertex) {
-        return VertexRecord{glm::vec4(vertex.normal, 0), vertex.tangent, vertex.texCoord, vertex.texCoord1,
-                            vertex.colour};
-    });
-    return store(buffer, bytesOf(records), "scene vertices");
+bool storePositions(gl::Buffer& buffer, const std::vector<glm::vec3>& positions,
+                    const std::vector<Geometry::Range>& ranges, const char* label) {
+    return storeItems<glm::vec4>(buffer, positions, ranges, label,
+                                 [](const glm::vec3& position) { return glm::vec4(position, 1); });
+}
+
+bool storeVertices(gl::Buffer& buffer, const Geometry& geometry) {
+    return storeItems<VertexRecord>(buffer, geometry.attributes, geometry.moving, "scene vertices",
+                                    [](const VertexAttributes& vertex) {
+                                        return VertexRecord{glm::vec4(vertex.normal, 0), vertex.tangent,
+                                                            vertex.texCoord, vertex.texCoord1, vertex.colour};
+                                    });
 }
 
 constexpr std::string_view colourTextures = "scene_colour_textures";
@@ -143,32 +160,33 @@ GpuScene::GpuScene(const Scene& scene)
 
 void GpuScene::update(const Geometry& geometry) {
     KESTREL_CHECK_EQ(geometry.positions.size(), geometry.attributes.size());
-    bool fresh = storePositions(positions_, geometry.positions, "scene positions");
-    fresh |= storeVertices(vertices_, geometry.attributes);
+    bool fresh = storePositions(positions_, geometry.positions, geometry.moving, "scene positions");
+    fresh |= storeVertices(vertices_, geometry);
     const bool moves = !geometry.previousPositions.empty();
     if (moves) {
         KESTREL_CHECK_EQ(geometry.previousPositions.size(), geometry.positions.size());
-        fresh |= storePositions(previousPositions_, geometry.previousPositions, "scene previous positions");
+        fresh |= storePositions(previousPositions_, geometry.previousPositions, geometry.moving,
+                                "scene previous positions");
     }
     fresh |= moves != moves_;
     moves_ = moves;
-    if (fresh || !hasTopology_) {
-        uploadTopology(geometry);
-        linkVertexArray();
-    }
+    if (!hasTopology_ || turns_ != geometry.turns || fresh) fresh |= uploadTopology(geometry);
+    if (fresh) linkVertexArray();
 }
 
-void GpuScene::uploadTopology(const Geometry& geometry) {
+bool GpuScene::uploadTopology(const Geometry& geometry) {
     triangleCount_ = geometry.triangleCount();
     KESTREL_CHECK_EQ(geometry.materials.size(), size_t{triangleCount_});
     std::vector<glm::uvec4> triangles(triangleCount_);
     for (size_t i = 0; i < triangles.size(); ++i)
         triangles[i] = {geometry.indices[3 * i], geometry.indices[3 * i + 1], geometry.indices[3 * i + 2],
                         geometry.materials[i]};
-    store(indices_, bytesOf(geometry.indices), "scene indices");
+    const bool fresh = store(indices_, bytesOf(geometry.indices), "scene indices");
     store(triangles_, bytesOf(triangles), "scene triangles");
     std::copy(std::begin(geometry.ranges), std::end(geometry.ranges), std::begin(ranges_));
     hasTopology_ = true;
+    turns_ = geometry.turns;
+    return fresh;
 }
 
 void GpuScene::linkVertexArray() {

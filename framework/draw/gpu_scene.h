@@ -16,8 +16,8 @@ public:
     // Uploads materials and textures. Throws MachineError where the device has not the memory or the layers.
     explicit GpuScene(const Scene& scene);
 
-    // The triangles at the frame's time. The topology goes up once, positions and attributes each time: call
-    // it only when something has moved.
+    // The triangles at another time of the scene: the first call sends everything, later ones what moves
+    // (Geometry::moving), and the triangles again where instances were turned over (Geometry::turns).
     void update(const Geometry& geometry);
     void setLights(const std::vector<LightState>& lights);
 
@@ -41,7 +41,7 @@ private:
         Format format;
     };
     [[nodiscard]] std::vector<TexelSource> texelSources() const;
-    void uploadTopology(const Geometry& geometry);
+    bool uploadTopology(const Geometry& geometry); // whether the buffer of indices is a new one
     void linkVertexArray();
 
     SceneTextures colours_, data_;
@@ -53,6 +53,7 @@ private:
     bool moves_ = false; // previous positions differ
     std::vector<LightState> uploadedLights_;
     bool hasTopology_ = false;
+    std::uint32_t turns_ = 0; // of the topology
 };
 
 } // namespace kestrel

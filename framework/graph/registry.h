@@ -20,10 +20,10 @@ struct PortInfo {
     PortDirection direction = PortDirection::Input;
     bool optional = false; // of an input
     std::string description;
-    Content content;
+    Content content = {};
     // An input of the same pass whose extent and camera this input must share; empty: none. Held where both
     // are connected.
-    std::string sameExtentAs;
+    std::string sameExtentAs = {};
     // The range of an output's values, where it is known; `render --check-finite` holds them against it.
     double minimum = -std::numeric_limits<double>::infinity(),
            maximum = std::numeric_limits<double>::infinity();
@@ -233,7 +233,7 @@ public:
 private:
     Describe& port(std::string name, PortKind kind, PortDirection direction, bool optional,
                    std::string description) {
-        type_.ports.push_back({std::move(name), kind, direction, optional, std::move(description), {}, {}});
+        type_.ports.push_back({std::move(name), kind, direction, optional, std::move(description)});
         return *this;
     }
     Describe& property(PropertyInfo info) {

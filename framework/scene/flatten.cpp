@@ -68,6 +68,7 @@ struct Flattener::State {
         : scene(theScene) {
         place();
         layOut();
+        findMoving();
     }
 
     void place() {
@@ -122,6 +123,20 @@ struct Flattener::State {
                 if (!primitive.texCoords1.empty()) attributes[i].texCoord1 = primitive.texCoords1[i];
                 if (!primitive.colours.empty()) attributes[i].colour = primitive.colours[i];
             }
+        }
+    }
+
+    // Neighbours that move are one range.
+    void findMoving() {
+        for (const Placed& one : placed) {
+            const auto count = static_cast<std::uint32_t>(one.instance.primitive->positions.size());
+            if (!one.motion.moves || count == 0) continue;
+            const auto first = static_cast<std::uint32_t>(one.firstVertex);
+            std::vector<Geometry::Range>& ranges = geometry.moving;
+            if (!ranges.empty() && ranges.back().first + ranges.back().count == first)
+                ranges.back().count += count;
+            else
+                ranges.push_back({first, count});
         }
     }
 
@@ -190,12 +205,15 @@ struct Flattener::State {
         for (const Chunk& chunk : chunks) placed[chunk.placed].bounds = {};
         for (const Chunk& chunk : chunks) placed[chunk.placed].bounds.add(chunk.bounds);
         geometry.bounds = {};
+        bool turned = false;
         for (size_t i = 0; i < placed.size(); ++i) {
             geometry.bounds.add(placed[i].bounds);
             if (placed[i].mirrored == deformed[i].mirrors()) continue;
             placed[i].mirrored = deformed[i].mirrors();
             writeIndices(placed[i]);
+            turned = true;
         }
+        if (turned) ++geometry.turns;
         time = newTime;
     }
 

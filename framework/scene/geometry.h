@@ -37,9 +37,14 @@ struct Geometry {
     std::vector<std::uint32_t> materials; // one a triangle: index into the scene's materials (the default
                                           // material is appended by flatten() as the last one)
     struct Range {
-        std::uint32_t first = 0, count = 0; // in triangles
+        std::uint32_t first = 0, count = 0; // in triangles, unless said otherwise
     };
     Range ranges[static_cast<size_t>(TriangleClass::Count)];
+    // The vertices (first, count) that differ from one time of the scene to another; those between never do.
+    std::vector<Range> moving;
+    // Counts the frames in which an instance began or ended to be mirrored: with another number, `indices`
+    // differ.
+    std::uint32_t turns = 0;
     Box bounds; // of this frame
 
     [[nodiscard]] std::uint32_t triangleCount() const {

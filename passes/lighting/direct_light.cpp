@@ -1,4 +1,5 @@
 #include "direct_light.h"
+#include "draw/no_light.h"
 #include <algorithm>
 
 namespace kestrel {
@@ -69,7 +70,7 @@ Defines DirectLight::lightDefines(const LightMapLayout& maps) const {
     Defines defines = maps.defines();
     if (maps.mapped) {
         defines.emplace("SHADOWS", "1");
-        defines["SHADOW_TAPS"] = filter == Filter::Nearest ? "1" : filter == Filter::Two ? "2" : "4";
+        defines.emplace("SHADOW_TAPS", filter == Filter::Nearest ? "1" : filter == Filter::Two ? "2" : "4");
     }
     return defines;
 }
@@ -138,7 +139,7 @@ void DirectLight::declareShading(const World& world, const Inputs& inputs, const
         .group = "shading"};
     const auto add = [&](const char* port, const char* define, bool lit) {
         Output output{.port = port, .desc = texture};
-        if (!lit) output.constant = glm::vec4(0);
+        if (!lit) output.constant = noLight;
         declaration.outputs.push_back(std::move(output));
         if (!lit || !demand.reads(port)) return;
         shade.defines.emplace(define, "1");

@@ -1,5 +1,6 @@
 #include "rsm_gather.h"
 #include "draw/face_input.h"
+#include "draw/no_light.h"
 
 namespace kestrel {
 namespace {
@@ -59,7 +60,7 @@ Declaration RsmGather::declare(const World& world, const Inputs& inputs, const D
         if (!layout && !inputs["map_radiance"].constant &&
             world.facts.pointLights + world.facts.spotLights > 0)
             declaration.problems.push_back({"maps", "does not hold the maps of this scene's lights"});
-        result.constant = glm::vec4(0);
+        result.constant = noLight;
         declaration.outputs.push_back(std::move(result));
         declaration.leftOut.push_back(
             {"gathering", inputs["depth"].constant ? "there is nothing in view" : "no light has a map"});

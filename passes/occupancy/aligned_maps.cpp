@@ -11,9 +11,9 @@
 namespace kestrel {
 
 Defines AlignedMaps::defines() const {
-    return {{"RESOLUTION", std::to_string(resolution)},
-            {"WORDS", std::to_string(words())},
-            {"DIRECTIONS", std::to_string(directions)}};
+    Defines defines = columnDefines(resolution);
+    defines.emplace("DIRECTIONS", std::to_string(directions));
+    return defines;
 }
 
 Desc AlignedMaps::directionsDesc() const {

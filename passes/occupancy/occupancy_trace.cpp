@@ -58,11 +58,10 @@ Declaration OccupancyTrace::declare(const World& world, const Inputs& inputs, co
 
     Module tracer{.port = "tracer",
                   .shader = "occupancy/occupancy_trace.glsl",
-                  .defines = {{"RESOLUTION", std::to_string(*resolution)},
-                              {"WORDS", std::to_string(*resolution / 32)},
-                              {"ITERATIONS", std::to_string(iterations)}},
+                  .defines = columnDefines(*resolution),
                   .uses = {{.port = "grid", .access = Access::Uniform},
                            {.port = "settings", .access = Access::Uniform}}};
+    tracer.defines.emplace("ITERATIONS", std::to_string(iterations));
     Step settings{.name = "settings",
                   .run = &OccupancyTrace::uploadSettings,
                   .uses = {{.port = "settings", .access = Access::Copy, .write = true}},
@@ -99,13 +98,12 @@ void OccupancyTrace::declareColumns(const World& world, int resolution, Declarat
     if (!image) tracer.defines["MAP_STORAGE"] = "1";
     tracer.uses.push_back({.port = "columns", .access = image ? Access::Image : Access::Storage});
     declaration.outputs.push_back({.port = "columns", .desc = desc});
-    Step columns{
-        .name = "columns",
-        .run = [n](Commands& commands) { commands.dispatchOver(n, n); },
-        .shaders = {"occupancy/columns.comp"},
-        .defines = {{"RESOLUTION", std::to_string(resolution)}, {"WORDS", std::to_string(resolution / 32)}},
-        .uses = {{.port = "columns", .access = Access::Storage, .write = true}},
-        .group = "generation"};
+    Step columns{.name = "columns",
+                 .run = [n](Commands& commands) { commands.dispatchOver(n, n); },
+                 .shaders = {"occupancy/columns.comp"},
+                 .defines = columnDefines(resolution),
+                 .uses = {{.port = "columns", .access = Access::Storage, .write = true}},
+                 .group = "generation"};
     Step coarser = columns;
     coarser.defines.emplace("COARSER", "1");
     columns.uses.push_back({.port = "occupancy", .access = Access::Storage});

@@ -3,6 +3,7 @@
 #include "execute/commands.h"
 #include "grid.h"
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <fmt/format.h>
 
@@ -20,6 +21,19 @@ struct ExhaustedRays {
 Format columnFormat(int words) {
     if (words == 1) return Format::R32UI;
     return words == 2 ? Format::RG32UI : Format::RGBA32UI;
+}
+
+Defines columnDefines(int resolution) {
+    const int words = resolution / 32;
+    const Format format = columnFormat(words);
+    constexpr std::array types = {"uint", "uint", "uvec2", "", "uvec4"};
+    constexpr std::array parts = {"x", "x", "xy", "", "xyzw"};
+    const auto channels = static_cast<size_t>(formatInfo(format).channels);
+    return {{"RESOLUTION", std::to_string(resolution)},
+            {"WORDS", std::to_string(words)},
+            {"COLUMN_FORMAT", std::string(formatInfo(format).name)},
+            {"COLUMN_TYPE", types.at(channels)},
+            {"COLUMN_PART", parts.at(channels)}};
 }
 
 bool fitsTexels(const Desc& buffer, const Capabilities& capabilities) {

@@ -1,5 +1,6 @@
 #include "glossy_reflection.h"
 #include "draw/face_input.h"
+#include "draw/no_light.h"
 #include "draw/ray_steps.h"
 #include "execute/commands.h"
 
@@ -40,7 +41,7 @@ Declaration GlossyReflection::declare(const World& world, const Inputs& inputs, 
     const Desc& depth = inputs["depth"].desc;
     Output result{.port = "result", .desc = Desc::texture2D(Format::RGBA32F, depth.extent, depth.view)};
     if (inputs["depth"].constant == glm::vec4(0)) {
-        result.constant = glm::vec4(0);
+        result.constant = noLight;
         declaration.outputs.push_back(std::move(result));
         declaration.leftOut.push_back({"tracing", "the depth is empty everywhere"});
         return declaration;

@@ -1,5 +1,6 @@
 #include "indirect_diffuse.h"
 #include "draw/face_input.h"
+#include "draw/no_light.h"
 #include "draw/ray_steps.h"
 #include "execute/commands.h"
 
@@ -45,7 +46,7 @@ Declaration IndirectDiffuse::declare(const World& world, const Inputs& inputs, c
 
     Output result{.port = "result", .desc = Desc::texture2D(Format::RGBA32F, depth.extent, depth.view)};
     Output weight{.port = "weight", .desc = Desc::texture2D(Format::R32F, depth.extent, depth.view)};
-    if (background) result.constant = glm::vec4(0);
+    if (background) result.constant = noLight;
     if (background || !snaps) weight.constant = glm::vec4(1);
     declaration.outputs.push_back(result);
     if (weighted) declaration.outputs.push_back(weight);

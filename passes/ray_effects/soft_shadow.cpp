@@ -1,5 +1,6 @@
 #include "soft_shadow.h"
 #include "draw/face_input.h"
+#include "draw/no_light.h"
 #include "draw/ray_steps.h"
 #include "execute/commands.h"
 #include "shared/emitter.h"
@@ -83,7 +84,7 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
     Output visibility{.port = "visibility", .desc = Desc::texture2D(Format::R32F, depth.extent, depth.view)};
     Output weight{.port = "weight", .desc = Desc::texture2D(Format::R32F, depth.extent, depth.view)};
     if (background || dark) {
-        result.constant = glm::vec4(0);
+        result.constant = noLight;
         visibility.constant = glm::vec4(1);
         weight.constant = glm::vec4(0);
         declaration.outputs = {std::move(result), std::move(visibility), std::move(weight)};

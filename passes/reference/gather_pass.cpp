@@ -1,5 +1,6 @@
 #include "gather_pass.h"
 #include "draw/face_input.h"
+#include "draw/no_light.h"
 #include "execute/commands.h"
 
 namespace kestrel {
@@ -15,7 +16,8 @@ Declaration declareGather(const Inputs& inputs, const std::vector<std::string>& 
         const Format format = port == "result" ? Format::RGBA32F : Format::R32F;
         declaration.outputs.push_back(
             {.port = port, .desc = Desc::texture2D(format, position.extent, position.view)});
-        if (empty || !leftOut.empty()) declaration.outputs.back().constant = glm::vec4(0);
+        if (empty || !leftOut.empty())
+            declaration.outputs.back().constant = port == "result" ? noLight : glm::vec4(0);
         step.uses.push_back({.port = port, .access = Access::Copy, .write = true});
     }
     if (empty || !leftOut.empty()) {

@@ -4,18 +4,11 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-#if WORDS == 1
-#define COLUMN uint
-#elif WORDS == 2
-#define COLUMN uvec2
-#else
-#define COLUMN uvec4
-#endif
 const int texels = (WORDS + 3) / 4; // a column
 
 #ifdef COARSER
 
-layout(std430) buffer Columns { COLUMN columns[]; };
+layout(std430) buffer Columns { COLUMN_TYPE columns[]; };
 uniform int level; // that is made
 
 void main() {
@@ -33,7 +26,7 @@ void main() {
 #else
 
 layout(std430) readonly buffer Occupancy { uint occupancy[]; };
-layout(std430) writeonly buffer Columns { COLUMN columns[]; };
+layout(std430) writeonly buffer Columns { COLUMN_TYPE columns[]; };
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);

@@ -50,26 +50,12 @@ layout(r32ui) readonly uniform uimageBuffer M(occupancy);
 
 #else
 
-#if WORDS == 1
-#define TEXEL r32ui
-#define TEXEL_TYPE uint
-#define COMPONENTS x
-#elif WORDS == 2
-#define TEXEL rg32ui
-#define TEXEL_TYPE uvec2
-#define COMPONENTS xy
-#else
-#define TEXEL rgba32ui
-#define TEXEL_TYPE uvec4
-#define COMPONENTS xyzw
-#endif
-
 #ifdef MAP_STORAGE
-layout(std430) readonly buffer M(Columns) { TEXEL_TYPE M(columns)[]; };
+layout(std430) readonly buffer M(Columns) { COLUMN_TYPE M(columns)[]; };
 #define TEXELS(index) M(columns)[index]
 #else
-layout(TEXEL) readonly uniform uimageBuffer M(columns);
-#define TEXELS(index) imageLoad(M(columns), index).COMPONENTS
+layout(COLUMN_FORMAT) readonly uniform uimageBuffer M(columns);
+#define TEXELS(index) imageLoad(M(columns), index).COLUMN_PART
 #endif
 
 // Of a level's map, at (x, y) in its columns.
@@ -249,7 +235,4 @@ bool M(closestHit)(Ray ray, out Hit hit) {
 
 #endif // EMPTY
 #undef MAP_WORD
-#undef TEXEL
-#undef TEXEL_TYPE
-#undef COMPONENTS
 #undef TEXELS

@@ -11,20 +11,6 @@
 #include "lib/iterations.glsl"
 #include "occupancy/aligned.glsl"
 
-#if WORDS == 1
-#define TEXEL r32ui
-#define TEXEL_TYPE uint
-#define COMPONENTS x
-#elif WORDS == 2
-#define TEXEL rg32ui
-#define TEXEL_TYPE uvec2
-#define COMPONENTS xy
-#else
-#define TEXEL rgba32ui
-#define TEXEL_TYPE uvec4
-#define COMPONENTS xyzw
-#endif
-
 layout(std140) uniform M(Grids) { OccupancyGrid M(grids)[LEVELS]; };
 layout(rgba32f) readonly uniform imageBuffer M(directions);
 OccupancySettings M(settings)() { return alignedSettings(imageLoad(M(directions), 0)); }
@@ -53,11 +39,11 @@ bool M(closestHit)(Ray ray, out Hit hit) {
 #else
 
 #ifdef MAPS_STORAGE
-layout(std430) readonly buffer M(Maps) { TEXEL_TYPE M(maps)[]; };
+layout(std430) readonly buffer M(Maps) { COLUMN_TYPE M(maps)[]; };
 #define TEXELS(index) M(maps)[index]
 #else
-layout(TEXEL) readonly uniform uimageBuffer M(maps);
-#define TEXELS(index) imageLoad(M(maps), index).COMPONENTS
+layout(COLUMN_FORMAT) readonly uniform uimageBuffer M(maps);
+#define TEXELS(index) imageLoad(M(maps), index).COLUMN_PART
 #endif
 
 OccupancyColumn M(column)(int level, int map, ivec2 at) {
@@ -196,7 +182,4 @@ bool M(anyHit)(Ray ray) {
 bool M(closestHit)(Ray ray, out Hit hit) { return M(search)(ray, true, hit); }
 
 #endif // EMPTY
-#undef TEXEL
-#undef TEXEL_TYPE
-#undef COMPONENTS
 #undef TEXELS

@@ -45,6 +45,7 @@ Geometry geometryOf(std::vector<Quad> quads) {
         range.count += 2;
         geometry.materials.insert(geometry.materials.end(), 2, quad.material);
     }
+    geometry.moving = {{0, static_cast<std::uint32_t>(geometry.positions.size())}}; // all of it may
     return geometry;
 }
 
@@ -190,6 +191,35 @@ TEST_F(DrawSceneTest, PreviousPositionsAreThoseOfTheLastFrameOrOfThisOne) {
     geometry.previousPositions.clear();
     gpu.update(geometry);
     EXPECT_EQ(pixel(drawPrevious(), 1, 4), red);
+}
+
+TEST_F(DrawSceneTest, WhatMovesIsSentAgainAndNothingElse) {
+    Scene scene;
+    scene.materials = {coloured(red), coloured(green)};
+    GpuScene gpu(scene);
+    Geometry geometry = geometryOf({{{-1, -1}, {-0.5f, 1}, 0, 0}, {{0.5f, -1}, {1, 1}, 0, 1}});
+    geometry.moving = {{4, 4}};
+    gpu.update(geometry);
+    EXPECT_EQ(pixel(draw(gpu, {}), 0, 4), red);
+    EXPECT_EQ(pixel(draw(gpu, {}), 7, 4), green);
+    for (glm::vec3& position : geometry.positions)
+        position.x *= 0.5f; // that of the first is not to be looked at
+    gpu.update(geometry);
+    EXPECT_EQ(pixel(draw(gpu, {}), 0, 4), red);
+    EXPECT_EQ(pixel(draw(gpu, {}), 7, 4), nothing);
+    EXPECT_EQ(pixel(draw(gpu, {}), 5, 4), green);
+}
+
+TEST_F(DrawSceneTest, TrianglesThatAreTurnedOverKeepTheirFront) {
+    Scene scene;
+    scene.materials = {coloured(red)};
+    GpuScene gpu(scene);
+    gpu.update(geometryOf({{{-1, -1}, {1, 1}}}));
+    EXPECT_EQ(pixel(draw(gpu, {}), 4, 4), red);
+    Geometry turned = geometryOf({{{1, -1}, {-1, 1}, 0, 0, TriangleClass::Opaque, true}});
+    turned.turns = 1;
+    gpu.update(turned);
+    EXPECT_EQ(pixel(draw(gpu, {}), 4, 4), red);
 }
 
 TEST_F(DrawSceneTest, VertexColoursCountWhereTheSceneHasThem) {

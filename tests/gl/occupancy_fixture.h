@@ -1,6 +1,7 @@
 // What the tests of passes/occupancy share: scenes of a few triangles, a graph of the two passes, and rays
 // through them.
 #pragma once
+#include "core/files.h"
 #include "execute/commands.h"
 #include "execute/renderer.h"
 #include "gl/gl_fixture.h"
@@ -10,7 +11,7 @@
 #include "passes/occupancy/occupancy_trace.h"
 #include "passes/occupancy/roma.h"
 #include "passes/occupancy/roma_cascade.h"
-#include "passes/ray_effects/ray_query.h"
+#include "plugin/loader.h"
 #include "shared/ray.h"
 #include "support/folders.h"
 #include <bit>
@@ -70,7 +71,9 @@ public:
     static PassType type() {
         return Describe<MapSource>("MapSource", "An occupancy map of a test")
             .output("occupancy", PortKind::Buffer, "The bits")
-            .output("grid", PortKind::Buffer, "Where the cells lie");
+            .carries(content::elements("OccupancyWord"))
+            .output("grid", PortKind::Buffer, "Where the cells lie")
+            .carries(content::elements("OccupancyGrid"));
     }
     static inline std::vector<std::uint32_t> words;
     static inline shared::OccupancyGrid grid;
@@ -110,7 +113,11 @@ inline const Registry& registry() {
         made.add(RomaCascade::type());
         made.add(OccupancyTrace::type());
         made.add(MapSource::type());
-        made.add(RayQuery::type());
+        // What traces, as a user has it: from its plugin, which stays loaded.
+        Registry plugins;
+        for (const PluginResult& failure : loadPlugins(plugins, pluginFolders()))
+            ADD_FAILURE() << failure.message;
+        made.add(*plugins.find("RayQuery"));
         made.add(RaySource::type());
         made.shaderFolders = {test::sourceFolder() / "shaders"};
         return made;

@@ -12,7 +12,8 @@ class RaySource final : public Pass {
 public:
     static PassType type() {
         return Describe<RaySource>("RaySource", "Rays of a test")
-            .output("rays", PortKind::Buffer, "Ray records");
+            .output("rays", PortKind::Buffer, "Ray records")
+            .carries(content::elements("RayRecord"));
     }
     static inline std::vector<shared::RayRecord> rays;
     [[nodiscard]] Declaration declare(const World&, const Inputs&, const Demand&) const override {

@@ -1,4 +1,5 @@
 // Every variant of the occupancy shaders that the passes can choose compiles.
+#include "passes/occupancy/tracing.h"
 #include "shader/validate.h"
 #include "support/folders.h"
 #include <algorithm>
@@ -12,8 +13,7 @@ using Choices = std::map<std::string, std::vector<std::string>>;
 const std::vector<std::pair<int, std::string>> sizes = {{32, "5"}, {64, "6"}, {128, "7"}, {256, "8"}};
 
 Defines sized(Defines defines, int resolution) {
-    defines["RESOLUTION"] = std::to_string(resolution);
-    defines["WORDS"] = std::to_string(resolution / 32);
+    defines.merge(columnDefines(resolution));
     return defines;
 }
 

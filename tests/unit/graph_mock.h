@@ -23,16 +23,16 @@ private:
 };
 
 inline PortInfo in(std::string name, PortKind kind = PortKind::Texture) {
-    return {std::move(name), kind, PortDirection::Input, false, "An input", {}, {}};
+    return {std::move(name), kind, PortDirection::Input, false, "An input"};
 }
 inline PortInfo opt(std::string name, PortKind kind = PortKind::Texture) {
-    return {std::move(name), kind, PortDirection::Input, true, "An optional input", {}, {}};
+    return {std::move(name), kind, PortDirection::Input, true, "An optional input"};
 }
 inline PortInfo out(std::string name, PortKind kind = PortKind::Texture) {
-    return {std::move(name), kind, PortDirection::Output, false, "An output", {}, {}};
+    return {std::move(name), kind, PortDirection::Output, false, "An output"};
 }
 inline PortInfo internal(std::string name, PortKind kind = PortKind::Texture) {
-    return {std::move(name), kind, PortDirection::Internal, false, "An internal resource", {}, {}};
+    return {std::move(name), kind, PortDirection::Internal, false, "An internal resource"};
 }
 
 inline PassType mockType(std::string name, std::vector<PortInfo> ports, Declare declare) {

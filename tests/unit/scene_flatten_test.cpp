@@ -206,6 +206,34 @@ TEST(Flatten, FrameAfterFrameEqualsFlatteningAnew) {
     expectEqual(flattener.at(0.6, 0.6), flatten(scene, 0.6, 0.6));
 }
 
+TEST(Flatten, SaysWhichVerticesMoveAndWhenTrianglesAreTurnedOver) {
+    Scene scene = triangleScene();
+    scene.nodes.resize(4);
+    for (Node& node : scene.nodes) node.mesh = 0;
+    scene.roots = {0, 1, 2, 3};
+    scene.animations = {{"",
+                         {linear(1, AnimatedPath::Translation, {0, 0, 0, 1, 2, 3}),
+                          linear(2, AnimatedPath::Scale, {-1, 1, 1, 1, 1, 1})}}};
+    finishScene(scene);
+    Flattener flattener(scene);
+    Geometry before = flattener.at(0);
+    ASSERT_EQ(before.moving.size(), 1u) << "neighbours are one range";
+    EXPECT_EQ(before.moving[0].first, 3u);
+    EXPECT_EQ(before.moving[0].count, 6u);
+    for (const double time : {0.25, 0.75, 1.0, 0.1}) {
+        const Geometry& now = flattener.at(time);
+        EXPECT_EQ(now.indices != before.indices, now.turns != before.turns) << time;
+        for (size_t i = 0; i < now.positions.size(); ++i)
+            if (i < 3 || i >= 9) {
+                EXPECT_EQ(now.positions[i], before.positions[i]);
+            }
+        before = now;
+    }
+    Scene still = triangleScene();
+    finishScene(still);
+    EXPECT_TRUE(flatten(still, 0).moving.empty());
+}
+
 TEST(Flatten, RefusesMoreTrianglesThanItCanHold) {
     Scene scene = triangleScene();
     scene.meshes[0].primitives[0].indices.assign(3 * 100000, 0);

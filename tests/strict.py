@@ -1,0 +1,34 @@
+"""Compiles every C++ file of a compilation database by itself, without making objects, and tells those that do not hold.
+
+    tests/strict.py build-strict/compile_commands.json
+"""
+import json
+import os
+import shlex
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+
+def checked(entry):
+    """What the compiler says of one file; empty if nothing."""
+    command = shlex.split(entry["command"])
+    if "-o" in command:
+        del command[command.index("-o"):command.index("-o") + 2]
+    ran = subprocess.run(command + ["-fsyntax-only"], cwd=entry["directory"], capture_output=True, text=True)
+    return ran.stderr if ran.returncode else ""
+
+
+def main():
+    with open(sys.argv[1], encoding="utf-8") as file:
+        entries = [entry for entry in json.load(file) if entry["file"].endswith(".cpp")]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        failed = [text for text in pool.map(checked, entries) if text]
+    for text in failed:
+        print(text, file=sys.stderr)
+    print(f"{len(entries) - len(failed)} of {len(entries)} files hold by themselves")
+    return 1 if failed or not entries else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
