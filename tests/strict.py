@@ -23,10 +23,11 @@ def main():
     with open(sys.argv[1], encoding="utf-8") as file:
         entries = [entry for entry in json.load(file) if entry["file"].endswith(".cpp")]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        failed = [text for text in pool.map(checked, entries) if text]
-    for text in failed:
-        print(text, file=sys.stderr)
-    print(f"{len(entries) - len(failed)} of {len(entries)} files hold by themselves")
+        failed = 0
+        for text in pool.map(checked, entries):
+            failed += bool(text)
+            print(text, end="", file=sys.stderr, flush=True)
+    print(f"{len(entries) - failed} of {len(entries)} files hold by themselves")
     return 1 if failed or not entries else 0
 
 
