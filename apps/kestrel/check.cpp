@@ -87,12 +87,13 @@ Plan planFor(const Graph& graph, const Registry& registry, World world, const Co
 int check(const CheckArguments& arguments) {
     const Registry& registry = loadedRegistry();
     const Graph graph = openGraph(arguments, registry);
+    if (graph.outputs.empty())
+        throw InputError(Location{arguments.graph}, "the graph has no outputs: nothing of it would be made");
     World world;
     world.size = parseSize(arguments.size);
     const Device device = deviceOf(arguments);
     world.capabilities = device.capabilities;
     const Scene scene = openScene(arguments, graph);
-    static_cast<void>(cameraIndex(scene, arguments.camera.empty() ? graph.sceneCamera : arguments.camera));
     world.facts = gatherFacts(scene);
 
     CompileOptions options;
@@ -103,9 +104,9 @@ int check(const CheckArguments& arguments) {
         fmt::print("{}\n", checkJson(graph, scene, plan, world.capabilities)
                                .dump(2, ' ', false, Json::error_handler_t::replace));
     else
-        fmt::print("for: OpenGL {}, {}\n{}", world.capabilities.version,
-                   world.capabilities.renderer == "none" ? "the minimum" : world.capabilities.renderer,
-                   planText(plan));
+        say("for: OpenGL {}, {}\n{}", world.capabilities.version,
+            world.capabilities.renderer == "none" ? "the minimum" : world.capabilities.renderer,
+            planText(plan));
     return static_cast<int>(ExitStatus::Done);
 }
 

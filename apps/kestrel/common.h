@@ -4,19 +4,35 @@
 #include "graph/plan.h"
 #include "scene/scene.h"
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace kestrel {
 
+// Where a command tells about its work: standard output, but standard error where results go to standard
+// output, and nowhere (null) under --quiet, with which only errors are told, and what was asked for as data.
+void reportTo(std::FILE* stream);
+[[nodiscard]] std::FILE* reportStream();
+template<class... Args>
+void say(fmt::format_string<Args...> format, Args&&... args) {
+    if (reportStream() != nullptr) fmt::print(reportStream(), format, std::forward<Args>(args)...);
+}
+
+// A check of an option: that its text is not empty.
+[[nodiscard]] CLI::Validator notEmpty();
+
 // The options that say which graph runs on which scene.
 struct GraphArguments {
-    std::string graph, scene, camera, size = "640x360";
-    std::vector<std::string> settings;
+    std::string graph, scene, camera, animation, size = "640x360";
+    std::vector<std::string> lights, settings;
+    std::optional<double> time, fps;
     SceneOptions sceneOptions;
 };
 
-// Adds GRAPH, --scene, --camera, --size, --set and --allow-outside to a command.
+// Adds GRAPH, --size, --set, and what says how the scene is set up, to a command.
 void addGraphArguments(CLI::App& command, GraphArguments& arguments);
 
 // Adds --allow-outside to a command that loads scenes.
@@ -25,12 +41,22 @@ void addAllowOutside(CLI::App& command, bool& allowOutside);
 // All pass types of the plugins that are there. A plugin that can't be used is told and skipped.
 const Registry& loadedRegistry();
 
-// The graph with the settings applied. Throws InputError with everything that is wrong with it.
+// The file of a graph: as it is named, else among those that come with Kestrel. Throws InputError with the
+// near name.
+std::filesystem::path graphFile(const std::string& graph);
+// The graph with the settings applied, and the scene's setup as the command line changes it. Throws
+// InputError with everything that is wrong with it.
 Graph openGraph(const GraphArguments& arguments, const Registry& registry);
-// The scene of the command line, else the graph's (relative to the graph's folder). Its warnings are told.
+// The scene of the command line, else the graph's (relative to the graph's folder), set up as the graph says.
+// Its warnings are told.
 Scene openScene(const GraphArguments& arguments, const Graph& graph);
 // Of a scene alone, relative to the working folder.
 Scene openScene(const std::string& source, const SceneOptions& options);
+
+// Where a file that the command line names lies: absolute, "standard input", or as it is for a pipe.
+std::string pathOf(const std::string& file);
+// Of the scene that openScene() opens; "builtin:NAME" as it is.
+std::string scenePath(const GraphArguments& arguments, const Graph& graph);
 
 // "640x360". Throws InputError for anything else, for 0 and for sides above 16384.
 Extent parseSize(const std::string& text);

@@ -1,8 +1,11 @@
 #include "compare.h"
+#include "common.h"
 #include "core/error.h"
+#include "core/files.h"
 #include "image/colormap.h"
 #include "image/error_figures.h"
 #include "image/io.h"
+#include "image/metrics.h"
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -137,7 +140,10 @@ void checkHeatMaps(const CompareOptions& options) {
     for (const std::filesystem::path& test : options.tests) {
         const std::string name = heatMapName(options.heatMap, test);
         const auto [owner, fresh] = owners.emplace(name, test.string());
-        if (fresh) continue;
+        if (fresh) {
+            requireWritable(name);
+            continue;
+        }
         if (options.heatMap.find("{}") == std::string::npos)
             throw InputError(fmt::format("--heatmap {}: for several tests it needs '{{}}' in its name, which "
                                          "stands for the test's",
@@ -148,23 +154,22 @@ void checkHeatMaps(const CompareOptions& options) {
 }
 
 void printFigures(const ErrorFigures& figures, const CompareOptions& options, const std::string& head) {
-    fmt::print("{} against {}\n", options.tests[0].string(), head);
-    for (const Metric& metric : metrics)
-        fmt::print("  {:<28}{:>12.6g}\n", metric.title, metric.value(figures));
+    say("{} against {}\n", options.tests[0].string(), head);
+    for (const Metric& metric : metrics) say("  {:<28}{:>12.6g}\n", metric.title, metric.value(figures));
 }
 
 void printRows(const std::vector<Measured>& measured, const std::string& head) {
     std::size_t width = 4;
     for (const Measured& one : measured) width = std::max(width, one.test.size());
-    fmt::print("against {}\n{:<{}}", head, "test", width);
+    say("against {}\n{:<{}}", head, "test", width);
     for (const Metric& metric : metrics)
-        if (!metric.column.empty()) fmt::print("{:>13}", metric.column);
+        if (!metric.column.empty()) say("{:>13}", metric.column);
     for (const Measured& one : measured) {
-        fmt::print("\n{:<{}}", one.test, width);
+        say("\n{:<{}}", one.test, width);
         for (const Metric& metric : metrics)
-            if (!metric.column.empty()) fmt::print("{:>13.6g}", metric.value(one.figures));
+            if (!metric.column.empty()) say("{:>13.6g}", metric.value(one.figures));
     }
-    fmt::print("\n");
+    say("\n");
 }
 
 void print(const std::vector<Measured>& measured, const CompareOptions& options, bool hdr) {
@@ -202,6 +207,7 @@ struct Measure {
     explicit Measure(const CompareOptions& chosen)
         : options(chosen)
         , reference(readPicture(chosen.reference)) {
+        requireFinite(reference.image, "picture", chosen.reference.string());
         if (chosen.mask.empty()) return;
         mask = convertChannels(readImage(chosen.mask), 1);
         requireSameSizes(reference.image, *mask, chosen, chosen.mask);
@@ -212,6 +218,7 @@ struct Measure {
         const Picture picture = readPicture(test);
         requireSameKind(reference, picture, options, test);
         requireSameSizes(reference.image, picture.image, options, test);
+        requireFinite(picture.image, "picture", test.string());
         Image errors;
         const ErrorFigures figures = measureError(reference.image, picture.image,
                                                   {.hdr = hdr(), .mask = mask ? &*mask : nullptr}, &errors);

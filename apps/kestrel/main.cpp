@@ -1,6 +1,7 @@
 // The command line of Kestrel: one file a command; here are only what holds for all of them, and the exit
 // status.
 #include "commands.h"
+#include "common.h"
 #include "core/check.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -94,7 +95,7 @@ int main(int argc, char** argv) {
             throw CLI::Success();
         },
         "Print the version and the parts and backends that are in");
-    app.add_flag("--quiet,-q", quiet, "Print no warnings");
+    app.add_flag("--quiet,-q", quiet, "Print nothing but errors, and what is asked for as data");
     app.add_flag("--verbose,-v", verbose, "Print what is done");
     app.require_subcommand(1);
     app.fallthrough();
@@ -116,6 +117,7 @@ int main(int argc, char** argv) {
         return tell(ExitStatus::BadInput, (unknown.empty() ? oneLine(error.what()) : unknown) +
                                               " ('kestrel --help' tells the usage)");
     }
+    if (quiet) reportTo(nullptr);
     setLogLevel(quiet ? LogLevel::Error : verbose ? LogLevel::Debug : LogLevel::Warning);
     return runGuarded(run);
 }

@@ -9,13 +9,20 @@
 namespace kestrel {
 
 struct OutputFile {
+    enum class Kind { Png, Hdr, Exr, Raw };
     PortRef port;
-    std::filesystem::path file;
+    std::filesystem::path file; // with "%d" or "%0Nd" in its name where every frame has a file of its own
+    Kind kind = Kind::Png;
+    bool sequence = false;
 };
 
-// "pass.port=FILE". Throws InputError for another form, and for a file ending that is none of .png, .hdr,
-// .exr and .bin.
+// "pass.port=FILE"; the ending says the kind: .png, .hdr, .exr, .bin. FILE may be "-" (standard output; a
+// PNG, or what "exr:-" names) and a pipe or device, which is a PNG where it has no ending. Throws InputError
+// for another form, and for a '%' in the name that begins no frame's number and is not doubled.
 OutputFile parseOutput(const std::string& text);
+
+// The file of one frame of a sequence; of another output `file`.
+std::filesystem::path fileOf(const OutputFile& output, std::uint32_t frame);
 
 // Files to be written, as bytes: nothing is written before everything has been made.
 using FileBytes = std::vector<std::pair<std::filesystem::path, std::vector<std::byte>>>;
@@ -26,9 +33,9 @@ using FileBytes = std::vector<std::pair<std::filesystem::path, std::vector<std::
 void addOutput(FileBytes& files, Renderer& renderer, const Registry& registry, const OutputFile& output);
 
 // The graph's outputs under their names: `folder`/pass.port.png, beside it an .exr where a PNG would cut
-// values off, and .bin for buffers.
+// values off, and .bin for buffers. `mark` stands before the ending: ".0007".
 void addGraphOutputs(FileBytes& files, Renderer& renderer, const Registry& registry,
-                     const std::filesystem::path& folder);
+                     const std::filesystem::path& folder, const std::string& mark = {});
 
 // Writes all; if one fails, those that were written are taken away again.
 void writeAll(const FileBytes& files);

@@ -65,13 +65,21 @@ int tellScene(const std::string& source, const SceneOptions& options, bool json)
     const SceneFacts facts = gatherFacts(scene);
     std::vector<std::string> cameras;
     for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
+    std::vector<std::string> animations, lights;
+    for (const Animation& animation : scene.animations) animations.push_back(animation.name);
+    for (const Light& light : scene.lights) lights.push_back(light.name);
     const Json values = factsJson(facts);
     if (json) {
-        printJson(
-            {{"name", scene.name}, {"cameras", cameras}, {"facts", values}, {"warnings", scene.warnings}});
+        printJson({{"name", scene.name},
+                   {"cameras", cameras},
+                   {"animations", animations},
+                   {"lights", lights},
+                   {"facts", values},
+                   {"warnings", scene.warnings}});
         return 0;
     }
-    fmt::print("{}\ncameras: {}\n", scene.name, fmt::join(cameras, ", "));
+    fmt::print("{}\ncameras: {}\nanimations: {}\n", scene.name, fmt::join(cameras, ", "),
+               fmt::join(animations, ", "));
     for (const auto& [name, value] : values.items())
         fmt::print("{}: {}\n", name, value.is_boolean() ? (value.get<bool>() ? "yes" : "no") : value.dump());
     return 0;
@@ -81,7 +89,7 @@ int exportTo(const std::string& source, const SceneOptions& options, const std::
     if (std::filesystem::path(file).extension() != ".glb")
         throw InputError(fmt::format("{}: scenes are written as .glb", file));
     exportScene(openScene(source, options), file);
-    fmt::print("{}\n", file);
+    say("{}\n", file);
     return 0;
 }
 
@@ -119,11 +127,20 @@ void addSceneCommand(CLI::App& app, Run& run) {
         run = [arguments] { return exportTo(arguments->source, arguments->options, arguments->file); };
     });
     scene->footer(
-        "Built-in scenes have three properties, as in 'builtin:tower?detail=0.1&split=4' (in quotes: '?' "
-        "and\n"
-        "'&' mean something to a shell): detail, 0.01 to 4, scales the number of triangles; split, 1 to 64,\n"
-        "cuts each triangle into that number squared: the same surface in more triangles; extent, 1\n"
-        "to 1000, makes the scene the middle of one so many times larger.\n"
+        std::string(
+            "Built-in scenes have three properties, as in 'builtin:tower?detail=0.1&split=4' (in quotes: '?' "
+            "and\n"
+            "'&' mean something to a shell): detail, 0.01 to 4, scales the number of triangles; split, 1 to "
+            "64,\n"
+            "cuts each triangle into that number squared: the same surface in more triangles; extent, 1\n"
+            "to 1000, makes the scene the middle of one so many times larger.\n\n"
+            "What a scene lacks can be added, by --camera and --light of render, check and sweep's scenes, "
+            "as\n"
+            "'key=value key=value' or as a JSON object. A camera has the keys\n") +
+        cameraKeysText() + "and a light, whose kind comes first,\n" + lightKeysText() +
+        "A camera's path, as a file: {\"kestrel_camera\": 1, \"target\": [0, 1, 0], \"keys\": [{\"time\": "
+        "0,\n"
+        "\"eye\": [4, 2, 0]}, {\"time\": 2, \"eye\": [0, 2, 4]}]}; --camera path=FILE.json takes it.\n\n"
         "Examples:\n"
         "  kestrel scene list\n"
         "  kestrel scene info model.glb --json\n"

@@ -76,17 +76,17 @@ void printRows(const Sweep& sweep, const SweepResults& results) {
     for (const SweepRow& row : results.rows) {
         const std::string name = row.scene + ": " + row.point;
         if (!row.picture.failed.empty()) {
-            fmt::print("{}: failed\n", name);
+            say("{}: failed\n", name);
             continue;
         }
         const auto time = row.ms.find(sweep.plotTime);
         const auto error = errorOf(row, sweep.plotError);
-        fmt::print("{}: {} {:.2f} ms, {} {:.4g}{}\n", name, sweep.plotTime,
-                   time == row.ms.end() ? 0.0 : time->second.median,
-                   row.ray                     ? "disagreement"
-                   : sweep.plotError == "ssim" ? "1-ssim"
-                                               : sweep.plotError,
-                   error.value_or(0), row.pareto ? ", on the front" : "");
+        say("{}: {} {:.2f} ms, {} {:.4g}{}\n", name, sweep.plotTime,
+            time == row.ms.end() ? 0.0 : time->second.median,
+            row.ray                     ? "disagreement"
+            : sweep.plotError == "ssim" ? "1-ssim"
+                                        : sweep.plotError,
+            error.value_or(0), row.pareto ? ", on the front" : "");
     }
 }
 
@@ -102,7 +102,7 @@ int finish(const Sweep& sweep, const SweepFolder& folder, const std::vector<Swee
     if (!results.missing.empty())
         logInfo("{} of the sweep's measurements are not in {} yet", results.missing.size(),
                 folder.path().string());
-    if (!json) fmt::print("{}\n", (folder.path() / "index.html").string());
+    if (!json) say("{}\n", (folder.path() / "index.html").string());
     bool failed = false;
     for (const SweepRow& row : results.rows) {
         if (row.picture.failed.empty()) continue;
@@ -167,10 +167,13 @@ int runSweepCommand(const SweepArguments& arguments) {
 void addSweepCommand(CLI::App& app, Run& run) {
     CLI::App* command = app.add_subcommand("sweep", "Measure error against run time of many variants");
     const auto arguments = std::make_shared<SweepArguments>();
-    command->add_option("FILE", arguments->file, "Sweep file (.json): scenes, the reference, variants");
+    command->add_option("FILE", arguments->file,
+                        "Sweep file (.json): scenes, the reference, variants; - is standard input");
     command->add_flag("--schema", arguments->schema, "Print the JSON schema of sweep files");
-    command->add_option("--out,-o", arguments->folder,
-                        "Folder for results.json, results.csv, results.md, index.html");
+    command
+        ->add_option("--out,-o", arguments->folder,
+                     "Folder for results.json, results.csv, results.md, index.html")
+        ->check(notEmpty());
     command->add_flag("--resume", arguments->resume,
                       "Go on with what the folder holds; what the sweep has gained since joins it");
     command->add_option("--markdown", arguments->markdown,

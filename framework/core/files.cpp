@@ -1,6 +1,8 @@
 #include "core/files.h"
 #include "core/error.h"
+#include "core/standard_output.h"
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <dlfcn.h>
@@ -21,6 +23,8 @@ namespace {
 
 std::string systemReason(int code) { return std::strerror(code); }
 
+const fs::path standardStream = "-";
+
 template<class Container>
 Container readAll(const fs::path& file, std::uintmax_t limit) {
     std::error_code failure;
@@ -38,6 +42,64 @@ Container readAll(const fs::path& file, std::uintmax_t limit) {
     return content;
 }
 
+// A pipe, a device or "-": until its end, which nobody knows before.
+template<class Container>
+Container readStream(const fs::path& file, std::uintmax_t limit) {
+    const int descriptor = file == standardStream ? STDIN_FILENO : ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) failFile(file, "cannot be read: " + systemReason(errno));
+    Container content;
+    constexpr size_t block = size_t{1} << 16;
+    size_t size = 0;
+    int reason = 0;
+    while (size <= limit) {
+        content.resize(size + block);
+        const ssize_t count = ::read(descriptor, content.data() + size, block);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) reason = errno;
+        if (count <= 0) break;
+        size += static_cast<size_t>(count);
+    }
+    if (descriptor != STDIN_FILENO) ::close(descriptor);
+    if (reason != 0) failFile(file, "cannot be read: " + systemReason(reason));
+    if (size > limit) failFile(file, fmt::format("has more than the {} bytes that are read at most", limit));
+    content.resize(size);
+    return content;
+}
+
+void writeDescriptor(int descriptor, const fs::path& target, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) failFile(target, "cannot be written: " + systemReason(errno));
+        bytes = bytes.subspan(static_cast<size_t>(count));
+    }
+}
+
+void writeStream(const fs::path& file, std::span<const std::byte> bytes) {
+    if (isStandardOutput(file)) {
+        std::fflush(stdout);
+        writeDescriptor(STDOUT_FILENO, file, bytes);
+        return;
+    }
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0) failFile(file, "cannot be written: " + systemReason(errno));
+    try {
+        writeDescriptor(descriptor, file, bytes);
+    } catch (...) {
+        ::close(descriptor);
+        throw;
+    }
+    if (::close(descriptor) != 0) failFile(file, "cannot be written: " + systemReason(errno));
+}
+
+// What a file is written to: of a link that to which it leads.
+fs::path linkTarget(const fs::path& file) {
+    std::error_code failure;
+    if (!fs::is_symlink(file, failure)) return file;
+    const fs::path target = fs::weakly_canonical(file, failure);
+    return failure ? file : target;
+}
+
 // An open file descriptor on a temporary name that is removed again unless it was renamed.
 class TemporaryFile {
 public:
@@ -53,12 +115,7 @@ public:
         if (!renamed_) ::unlink(name_.c_str());
     }
     void write(const fs::path& target, std::span<const std::byte> bytes) {
-        while (!bytes.empty()) {
-            const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
-            if (count < 0 && errno == EINTR) continue;
-            if (count < 0) failFile(target, "cannot be written: " + systemReason(errno));
-            bytes = bytes.subspan(static_cast<size_t>(count));
-        }
+        writeDescriptor(descriptor_, target, bytes);
     }
     void renameTo(const fs::path& target) {
         // mkostemp makes the file private; a result is as readable as any other file that the user makes.
@@ -94,15 +151,75 @@ std::vector<std::byte> readBytes(const fs::path& file, std::uintmax_t limit) {
 
 std::string readText(const fs::path& file, std::uintmax_t limit) { return readAll<std::string>(file, limit); }
 
+bool isStandardOutput(const fs::path& file) {
+    for (const char* name : {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"})
+        if (file == name) return true;
+    return false;
+}
+
+std::vector<std::byte> readGivenBytes(const fs::path& file, std::uintmax_t limit) {
+    return isStream(file) ? readStream<std::vector<std::byte>>(file, limit) : readBytes(file, limit);
+}
+
+std::string readGivenText(const fs::path& file, std::uintmax_t limit) {
+    return isStream(file) ? readStream<std::string>(file, limit) : readText(file, limit);
+}
+
+bool isStream(const fs::path& file) {
+    // Open already, whatever stands behind: a rename would miss it.
+    const std::string name = file.string();
+    for (const char* open : {"-", "/dev/stdin", "/dev/stdout", "/dev/stderr"})
+        if (name == open) return true;
+    if (name.starts_with("/dev/fd/") || name.starts_with("/proc/self/fd/")) return true;
+    std::error_code failure;
+    const fs::file_type type = fs::status(file, failure).type();
+    return type == fs::file_type::fifo || type == fs::file_type::character || type == fs::file_type::socket;
+}
+
 void writeFile(const fs::path& file, std::span<const std::byte> bytes) {
-    if (file.has_parent_path()) {
-        std::error_code failure;
-        fs::create_directories(file.parent_path(), failure);
-        if (failure) failFile(file.parent_path(), "cannot be made: " + failure.message());
+    if (isStream(file)) {
+        writeStream(file, bytes);
+        return;
     }
-    TemporaryFile temporary(file);
-    temporary.write(file, bytes);
-    temporary.renameTo(file);
+    const fs::path target = linkTarget(file);
+    if (target.has_parent_path()) {
+        std::error_code failure;
+        fs::create_directories(target.parent_path(), failure);
+        if (failure) failFile(target.parent_path(), "cannot be made: " + failure.message());
+    }
+    TemporaryFile temporary(target);
+    temporary.write(target, bytes);
+    temporary.renameTo(target);
+}
+
+void requireWritableFolder(const fs::path& folder) {
+    // The first folder on the way that is there must take another; rights alone do not tell (a file system
+    // that is read-only, or none).
+    fs::path there = fs::absolute(folder).lexically_normal();
+    std::error_code failure;
+    while (!fs::exists(fs::symlink_status(there, failure)) && there.has_relative_path()) {
+        const fs::path above = there.parent_path();
+        if (above == there) break;
+        there = above;
+    }
+    if (!fs::is_directory(there, failure))
+        failFile(folder, fmt::format("cannot be written: {} is not a folder", there.string()));
+    std::string probe = (there / ".kestrel.XXXXXX").string();
+    if (::mkdtemp(probe.data()) == nullptr)
+        failFile(folder, fmt::format("cannot be written: {}: {}", there.string(), systemReason(errno)));
+    ::rmdir(probe.c_str());
+}
+
+void requireWritable(const fs::path& file) {
+    if (isStandardOutput(file)) return;
+    if (isStream(file)) {
+        if (::access(file.c_str(), W_OK) != 0) failFile(file, "cannot be written: " + systemReason(errno));
+        return;
+    }
+    std::error_code failure;
+    const fs::path target = linkTarget(file);
+    if (fs::is_directory(target, failure)) failFile(file, "cannot be written: it is a folder");
+    requireWritableFolder(target.has_parent_path() ? target.parent_path() : ".");
 }
 
 void writeFile(const fs::path& file, std::string_view text) {

@@ -19,11 +19,25 @@ inline constexpr std::uintmax_t maxFileBytes = std::uintmax_t{2} << 30;
 std::vector<std::byte> readBytes(const std::filesystem::path& file, std::uintmax_t limit = maxFileBytes);
 std::string readText(const std::filesystem::path& file, std::uintmax_t limit = maxFileBytes);
 
+// A file that the user names: also "-", which is standard input, and pipes and devices, which are read to
+// their end. Throws as readBytes() does. Not for what a file from a stranger names.
+std::vector<std::byte> readGivenBytes(const std::filesystem::path& file, std::uintmax_t limit = maxFileBytes);
+std::string readGivenText(const std::filesystem::path& file, std::uintmax_t limit = maxFileBytes);
+// Whether it is read as a stream: "-", a pipe or a device.
+bool isStream(const std::filesystem::path& file);
+
 // Writes to a temporary name beside `file`, then renames, so that no reader ever sees half a file. Makes the
-// parent folder if it lacks. Throws InputError naming the file and the system's reason; nothing is left
-// behind then.
+// parent folder if it lacks. A pipe or a device is written as it is, and so is standard output, called "-";
+// of a symbolic link that to which it leads. Throws InputError naming the file and the system's reason;
+// nothing is left behind then.
 void writeFile(const std::filesystem::path& file, std::span<const std::byte> bytes);
 void writeFile(const std::filesystem::path& file, std::string_view text);
+
+// Throws as writeFile() would, by what can be known before there is anything to write: missing folders are
+// made and taken away again. For what takes long before it writes.
+void requireWritable(const std::filesystem::path& file);
+// The same of a folder that files will be written into.
+void requireWritableFolder(const std::filesystem::path& folder);
 
 // The path of `relative` (a URI path from an untrusted file) inside `folder`. Throws InputError if it is
 // absolute or leaves the folder, also through a symbolic link.

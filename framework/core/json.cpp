@@ -1,6 +1,8 @@
 #include "core/json.h"
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace kestrel {
@@ -87,7 +89,10 @@ public:
         return number_integer(static_cast<number_integer_t>(value));
     }
     bool number_float(number_float_t value, const string_t&) override {
-        return scalar(Json::Kind::Float, [&](Json& json) { json.number = value; });
+        return scalar(Json::Kind::Float, [&](Json& json) {
+            json.number = value;
+            if (json.isWhole()) json.integer = static_cast<std::int64_t>(value);
+        });
     }
     bool string(string_t& value) override {
         Json& json = put(Json::Kind::String);
@@ -112,8 +117,13 @@ public:
         cursor_.passString();
         return true;
     }
-    bool parse_error(std::size_t position, const std::string&,
+    bool parse_error(std::size_t position, const std::string& token,
                      const nlohmann::detail::exception& error) override {
+        constexpr int numberOverflow = 406;
+        if (error.id == numberOverflow)
+            throw InputError(cursor_.next(), fmt::format("the number {} is too large: at most {:.4g} can be "
+                                                         "read",
+                                                         token, std::numeric_limits<double>::max()));
         // The library's own text repeats the position; what follows the last ": " is the reason.
         std::string reason = error.what();
         const size_t cut = reason.find(": ");
@@ -171,6 +181,12 @@ Json Json::parse(std::string_view text, const std::string& file) {
     return std::move(builder.root);
 }
 
+bool Json::isWhole() const {
+    constexpr double exact = 9007199254740992; // 2^53: above it not every whole number is a double
+    if (kind == Kind::Int) return true;
+    return kind == Kind::Float && std::abs(number) <= exact && number == std::floor(number);
+}
+
 const Json* Json::find(std::string_view key) const {
     for (const Member& member : members)
         if (member.key == key) return &member.value;
@@ -219,7 +235,8 @@ const Json* JsonFields::required(std::string_view key) {
 }
 
 const Json* JsonFields::checked(const Json* value, std::string_view key, Json::Kind kind) {
-    if (value == nullptr || value->kind == kind || (kind == Json::Kind::Float && value->isNumber()))
+    if (value == nullptr || value->kind == kind || (kind == Json::Kind::Float && value->isNumber()) ||
+        (kind == Json::Kind::Int && value->isWhole()))
         return value;
     Json wanted;
     wanted.kind = kind;

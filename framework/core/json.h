@@ -18,17 +18,20 @@ struct Json {
     Kind kind = Kind::Null;
     Location where; // of the value's first character
     bool boolean = false;
-    std::int64_t integer = 0; // valid for Int
+    std::int64_t integer = 0; // valid for Int, and for a Float that is whole (see isWhole)
     double number = 0;        // valid for Int and Float
     std::string text;         // valid for String
     std::vector<Json> items;  // valid for Array
     std::vector<Member> members;
 
     // Parses UTF-8 text; `file` is only named in locations. Limits: 16 MiB, nesting 64. Throws InputError
-    // with the place for text that is not JSON, and for a key that occurs twice in one object.
+    // with the place for text that is not JSON, a number beyond the range of double, and for a key that
+    // occurs twice in one object.
     static Json parse(std::string_view text, const std::string& file);
 
     [[nodiscard]] bool isNumber() const { return kind == Kind::Int || kind == Kind::Float; }
+    // Whether it is a whole number, as JSON schemas have it: 128.0 is one, up to 2^53.
+    [[nodiscard]] bool isWhole() const;
     // The member's value or nullptr.
     [[nodiscard]] const Json* find(std::string_view key) const;
     // The kind in words, with its article: "a string".
@@ -50,7 +53,8 @@ public:
     // The member or nullptr; a missing required one is noted.
     const Json* required(std::string_view key);
     const Json* optional(std::string_view key);
-    // As above, and of that kind, else noted and nullptr.
+    // As above, and of that kind, else noted and nullptr. Int takes any whole number (see isWhole), Float any
+    // number.
     const Json* required(std::string_view key, Json::Kind kind);
     const Json* optional(std::string_view key, Json::Kind kind);
     // Notes every member that was not asked for, with the near name among those that were. Call it last.

@@ -36,6 +36,12 @@ spdlog::logger& logger() {
 } // namespace
 
 void setLogLevel(LogLevel level) { logger().set_level(toSpdlog(level)); }
+LogLevel logLevel() {
+    for (const LogLevel level : {LogLevel::Debug, LogLevel::Info, LogLevel::Warning, LogLevel::Error})
+        if (logger().should_log(toSpdlog(level))) return level;
+    return LogLevel::Off;
+}
+
 void logMessage(LogLevel level, const std::string& message) { logger().log(toSpdlog(level), message); }
 
 } // namespace kestrel

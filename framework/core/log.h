@@ -9,6 +9,7 @@ namespace kestrel {
 enum class LogLevel { Debug, Info, Warning, Error, Off };
 
 void setLogLevel(LogLevel level);
+[[nodiscard]] LogLevel logLevel();
 void logMessage(LogLevel level, const std::string& message);
 
 template<class... Args>

@@ -1,4 +1,5 @@
 #include "core/progress.h"
+#include "core/log.h"
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ ProgressBar::~ProgressBar() { clear(); }
 
 void ProgressBar::update(double fraction, const std::string& detail) {
     static const bool terminal = isatty(STDERR_FILENO) != 0;
-    if (!terminal) return;
+    if (!terminal || logLevel() >= LogLevel::Error) return;
     const auto now = Clock::now();
     const std::chrono::duration<double> elapsed = now - begin_, sinceShown = now - shown_;
     if (elapsed.count() < 1 || sinceShown.count() < 0.1) return;

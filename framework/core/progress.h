@@ -1,4 +1,5 @@
-// A progress line on standard error, where that is a terminal; elsewhere nothing is printed.
+// A progress line on standard error, where that is a terminal; elsewhere, and where only errors are
+// logged, nothing is printed.
 #pragma once
 #include <chrono>
 #include <string>

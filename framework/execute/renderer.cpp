@@ -13,7 +13,6 @@ namespace kestrel {
 
 namespace {
 
-constexpr double timeStep = 1.0 / 60;
 // A pass may find only after growing once that it needs more still; more often than that, it never ends.
 constexpr int maxRecompilations = 8;
 
@@ -36,8 +35,8 @@ void requireValid(const Graph& graph, const Registry& registry) {
 
 } // namespace
 
-double timeAfter(double time, double duration) {
-    const double next = time + timeStep;
+double timeAfter(double time, double duration, double framesPerSecond) {
+    const double next = time + 1 / framesPerSecond;
     return next <= duration ? next : duration > 0 ? std::fmod(next, duration) : 0;
 }
 
@@ -63,7 +62,8 @@ Renderer::Renderer(Graph graph, const Registry& registry, Scene scene, const Cap
     , capabilities_(capabilities)
     , options_(std::move(options)) {
     requireValid(graph_, registry_);
-    camera_ = cameraIndex(scene_, options_.camera.empty() ? graph_.sceneCamera : options_.camera);
+    camera_ = cameraIndex(scene_, options_.camera.empty() ? graph_.sceneSetup.cameraName : options_.camera);
+    time_ = scene_.startTime;
     facts_ = gatherFacts(scene_);
     executor_ = std::make_unique<Executor>(capabilities_, shaderFolders(registry_));
     executor_->registry = &registry_;
@@ -164,7 +164,7 @@ void Renderer::setScene(Scene scene) {
     freeCamera_.reset();
     geometryMade_ = false;
     lastConditions_.reset();
-    time_ = 0;
+    time_ = scene_.startTime;
 }
 
 bool Renderer::reloadIfChanged() {
@@ -189,7 +189,7 @@ void Renderer::setTime(double seconds) { jump_ = seconds; }
 
 void Renderer::restart() {
     index_ = 0;
-    time_ = 0;
+    time_ = scene_.startTime;
     lastConditions_.reset();
     geometryMade_ = false;
 }
@@ -209,8 +209,8 @@ void Renderer::takeTime() {
         time_ = *jump_;
         jumped_ = time_ != before;
     } else if (moves() && !paused_ && lastConditions_) {
-        time_ = timeAfter(before, facts_.duration);
-        jumped_ = before + timeStep > facts_.duration;
+        time_ = timeAfter(before, facts_.duration, scene_.frameRate);
+        jumped_ = before + 1 / scene_.frameRate > facts_.duration;
     }
     jump_.reset();
 }

@@ -17,7 +17,7 @@ class GpuScene;
 struct RenderOptions {
     Extent size{640, 360, 1};
     std::uint32_t seed = 0;
-    std::string camera; // empty: the graph's, else the scene's first
+    std::string camera; // empty: the graph's, else Scene::camera
     bool keepAll = false;
     bool shareMemory = true;
     bool timing = false;           // times every step; waits for the GPU around each where the clock needs it
@@ -45,7 +45,8 @@ public:
              RenderOptions options = {});
     ~Renderer();
 
-    // Renders the next frame. An animated scene goes on by 1/60 s a frame and starts again at its end.
+    // Renders the next frame. An animated scene begins at Scene::startTime, goes on by 1 / Scene::frameRate a
+    // frame and starts again at its end.
     // Throws InputError naming pass, need and limit if a pass overflows again and again.
     const FrameRecord& frame();
     [[nodiscard]] const FrameRecord& last() const { return record_; }
@@ -69,7 +70,7 @@ public:
     void setTiming(bool timing);
     void setTime(double seconds);                     // jumps there with the next frame
     void setPaused(bool paused) { paused_ = paused; } // the time stands still
-    void restart();                                   // frame index 0, time 0, nothing kept
+    void restart();                                   // frame index 0, the scene's first time, nothing kept
     // Compiles anew if a shader file changed since it was read; true if so. With an error in the shader the
     // plan before stays and the InputError is thrown.
     bool reloadIfChanged();
@@ -121,7 +122,7 @@ private:
 };
 
 // The time of the frame after one at `time`, in a scene of `duration` seconds that starts again at its end.
-double timeAfter(double time, double duration);
+double timeAfter(double time, double duration, double framesPerSecond = 60);
 
 // The passes of a graph with its properties: pass objects of `before` of the same name and type are used
 // again, with every property set anew.

@@ -105,8 +105,7 @@ std::string whyImpossible(const Network& network, const Node& node) {
         if (port.direction != PortDirection::Input || port.optional || node.inputs.connected(port.name))
             continue;
         const auto feed = node.feeds.find(port.name);
-        if (feed == node.feeds.end())
-            return fmt::format("its input '{}' needs '?', which is not made here", port.name);
+        if (feed == node.feeds.end()) return fmt::format("its input '{}' is not connected", port.name);
         const std::string reason = whyNotMade(network.at(feed->second.node));
         return fmt::format("its input '{}' needs '{}', which is not made here{}{}", port.name,
                            network.text(feed->second), reason.empty() ? "" : ": ", reason);
@@ -172,11 +171,33 @@ bool declareForwardAgain(Network& network) {
     return changed;
 }
 
+// The pass for which one cannot run: whose input the first on the way back from it does not get.
+const Node& culprit(const Network& network, const Node& node) {
+    if (node.impossible.empty()) return node;
+    for (const PortInfo& port : node.type->ports) {
+        if (port.direction != PortDirection::Input || port.optional || node.inputs.connected(port.name))
+            continue;
+        const auto feed = node.feeds.find(port.name);
+        return feed == node.feeds.end() ? node : culprit(network, network.at(feed->second.node));
+    }
+    return node;
+}
+
 void noteMissingOutputs(const Network& network, std::vector<Problem>& problems) {
     for (size_t i = 0; i < network.graph.outputs.size(); ++i) {
         const Source& source = network.wanted[i];
         const Node& node = network.at(source.node);
         if (node.live && findOutput(node.real, source.port) != nullptr) continue;
+        // A mistake of a value is told where the value stands.
+        if (const Node& cause = culprit(network, node); &cause != &node && !cause.full.problems.empty()) {
+            const DeclarationProblem& problem = cause.full.problems.front();
+            problems.push_back(
+                {placeOf(cause, problem.port),
+                 fmt::format("pass '{}' ({}){}: {}, so that the output '{}' cannot be made", cause.name(),
+                             cause.type->name, problem.port.empty() ? "" : ", '" + problem.port + "'",
+                             problem.message, network.text(source))});
+            continue;
+        }
         std::string why = node.impossible.empty()
                               ? fmt::format("pass '{}' does not make it here", node.name())
                               : node.impossible;

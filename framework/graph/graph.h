@@ -2,6 +2,7 @@
 #pragma once
 #include "core/error.h"
 #include "graph/registry.h"
+#include "scene/setup.h"
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -43,7 +44,8 @@ struct GraphOutput {
 struct Graph {
     std::string name, comment;
     // "builtin:NAME" or a file, relative to the folder of `file`; empty: the file names none.
-    std::string sceneSource, sceneCamera;
+    std::string sceneSource;
+    SceneSetup sceneSetup; // what the file chooses of the scene and adds to it
     std::vector<GraphPass> passes;
     std::vector<GraphEdge> edges;
     std::vector<GraphOutput> outputs;

@@ -2,6 +2,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "graph/graph.h"
+#include "scene/setup_keys.h"
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -59,7 +60,7 @@ private:
         JsonFields fields(scene, "the scene", problems_);
         if (scene.kind != Kind::Object) return;
         graph.sceneSource = text(fields.optional("source", Kind::String));
-        graph.sceneCamera = text(fields.optional("camera", Kind::String));
+        sceneSetupKeys().readFields(problems_, fields, scene, graph.sceneSetup);
         fields.refuseOthers();
     }
 
@@ -164,7 +165,12 @@ Graph parseGraph(std::string_view text, const std::string& file) {
     return graph;
 }
 
-Graph loadGraph(const std::filesystem::path& file) { return parseGraph(readText(file), file.string()); }
+Graph loadGraph(const std::filesystem::path& file) {
+    Graph graph = parseGraph(readGivenText(file), file.string());
+    // What comes through a pipe lies nowhere: scenes are named from the working folder.
+    if (isStream(file)) graph.file = file.filename();
+    return graph;
+}
 
 const GraphPass* Graph::find(std::string_view pass) const {
     const auto found = std::find_if(passes.begin(), passes.end(),

@@ -44,6 +44,9 @@ std::string kindOf(const Value& value) {
     return names.at(value.index());
 }
 
+// As JSON schemas have it: 128.0 is a whole number.
+bool isWhole(double number) { return std::abs(number) <= 9007199254740992 && number == std::floor(number); }
+
 std::optional<std::string> wrongKind(const std::string& wanted, const Value& value) {
     return fmt::format("must be {}, not {}", wanted, kindOf(value));
 }
@@ -84,6 +87,8 @@ std::optional<std::string> valueMistake(const PropertyInfo& property, const Valu
         if (!std::holds_alternative<bool>(value)) return wrongKind("true or false", value);
         return {};
     case PropertyKind::Int:
+        if (const auto* number = std::get_if<double>(&value); number != nullptr && isWhole(*number))
+            return rangeMistake(property, *number);
         if (!std::holds_alternative<std::int64_t>(value)) return wrongKind("a whole number", value);
         return rangeMistake(property, static_cast<double>(std::get<std::int64_t>(value)));
     case PropertyKind::Float:

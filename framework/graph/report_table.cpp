@@ -1,6 +1,7 @@
 // The table of pass types as text and JSON, and the JSON schema made from it.
 #include "graph/report.h"
 #include "graph/value_text.h"
+#include "scene/setup_keys.h"
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
@@ -147,6 +148,14 @@ Out passSchema(const Registry& registry) {
     return json;
 }
 
+Out sceneSchema() {
+    Out schema = sceneSetupKeys().schema();
+    Out properties = {{"source", {{"type", "string"}}}};
+    properties.update(schema["properties"]);
+    schema["properties"] = std::move(properties);
+    return schema;
+}
+
 } // namespace
 
 std::string passListText(const Registry& registry) {
@@ -205,10 +214,7 @@ std::string graphSchema(const Registry& registry) {
         {"kestrel", {{"const", 1}}},
         {"name", text},
         {"comment", text},
-        {"scene",
-         {{"type", "object"},
-          {"properties", {{"source", text}, {"camera", text}}},
-          {"additionalProperties", false}}},
+        {"scene", sceneSchema()},
         {"passes",
          {{"type", "object"},
           {"propertyNames", {{"pattern", "^[a-z][a-z0-9_]*$"}}},

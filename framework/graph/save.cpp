@@ -1,6 +1,7 @@
 // The canonical text of a graph.
 #include "graph/graph.h"
 #include "graph/value_text.h"
+#include "scene/setup_keys.h"
 #include <fmt/format.h>
 
 namespace kestrel {
@@ -49,7 +50,7 @@ std::string saveGraph(const Graph& graph) {
     if (!graph.comment.empty()) root.add("comment", jsonText(graph.comment));
     Members scene;
     if (!graph.sceneSource.empty()) scene.add("source", jsonText(graph.sceneSource));
-    if (!graph.sceneCamera.empty()) scene.add("camera", jsonText(graph.sceneCamera));
+    for (const auto& [key, value] : sceneSetupKeys().members(graph.sceneSetup)) scene.add(key, value);
     if (!scene.empty()) root.add("scene", scene.inOneLine());
 
     Members passes;

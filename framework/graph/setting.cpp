@@ -1,6 +1,7 @@
 // `--set`: changes a property or moves an edge.
 #include "graph/graph.h"
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace kestrel {
@@ -45,6 +46,9 @@ Value valueOf(const PropertyInfo& property, const std::string& text) {
         break;
     case PropertyKind::Int:
         if (const auto number = wholeText<std::int64_t>(text)) return *number;
+        // 128.0 is a whole number too.
+        if (const auto number = wholeText<double>(text); number && *number == std::floor(*number))
+            return *number;
         break;
     case PropertyKind::Float:
         if (const auto number = wholeText<std::int64_t>(text)) return *number;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <functional>
+#include <set>
 #include <unordered_map>
 
 namespace kestrel {
@@ -118,10 +119,31 @@ private:
         }
     }
 
+    // The passes that an output needs, directly or through others; all where there are no outputs yet.
+    [[nodiscard]] std::set<std::string> wanted() const {
+        std::unordered_map<std::string, std::vector<std::string>> producers;
+        for (const GraphEdge& edge : graph_.edges) producers[edge.to.pass].push_back(edge.from.pass);
+        std::vector<std::string> open;
+        for (const GraphOutput& output : graph_.outputs) open.push_back(output.port.pass);
+        if (graph_.outputs.empty())
+            for (const GraphPass& pass : graph_.passes) open.push_back(pass.name);
+        std::set<std::string> found;
+        while (!open.empty()) {
+            const std::string pass = std::move(open.back());
+            open.pop_back();
+            if (!found.insert(pass).second) continue;
+            const std::vector<std::string>& more = producers[pass];
+            open.insert(open.end(), more.begin(), more.end());
+        }
+        return found;
+    }
+
+    // A pass that stands by for another, connected to nothing, is left out; only what is wanted needs inputs.
     void checkRequiredInputs() {
+        const std::set<std::string> needed = wanted();
         for (const GraphPass& pass : graph_.passes) {
             const PassType* type = typeOf(pass);
-            if (type == nullptr) continue;
+            if (type == nullptr || !needed.contains(pass.name)) continue;
             for (const PortInfo& info : type->ports)
                 if (info.direction == PortDirection::Input && !info.optional &&
                     !feeds_.contains(PortRef{pass.name, info.name}))

@@ -70,6 +70,7 @@ std::string lowerCase(std::string text) {
 }
 
 bool isFile(const std::string& name) {
+    if (name == "-") return true; // standard input
     std::error_code failure;
     const auto type = std::filesystem::status(name, failure).type();
     return type != std::filesystem::file_type::not_found && type != std::filesystem::file_type::none &&
@@ -138,7 +139,7 @@ Image decodeImage(std::span<const std::byte> bytes, const std::string& name, con
 Picture readPicture(const ImageName& name) {
     // The greatest image that is read, uncompressed, and as much again for what else a file may hold.
     constexpr std::uintmax_t limit = 2 * sizeof(float) * maxImageValues - 1;
-    return decodePicture(readBytes(name.file, limit), name.file.string(), name.layer);
+    return decodePicture(readGivenBytes(name.file, limit), name.file.string(), name.layer);
 }
 
 Picture readPicture(const std::filesystem::path& name) { return readPicture(imageName(name)); }

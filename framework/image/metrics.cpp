@@ -8,9 +8,7 @@
 #include <limits>
 
 namespace kestrel {
-namespace {
-
-void requireFinite(const Image& image, const char* which) {
+void requireFinite(const Image& image, const std::string& which, const std::string& file) {
     const auto first = std::find_if(image.values.begin(), image.values.end(),
                                     [](float value) { return !std::isfinite(value); });
     if (first == image.values.end()) return;
@@ -18,11 +16,15 @@ void requireFinite(const Image& image, const char* which) {
         std::count_if(first, image.values.end(), [](float value) { return !std::isfinite(value); });
     const std::size_t pixel =
         static_cast<std::size_t>(first - image.values.begin()) / static_cast<std::size_t>(image.channels);
-    throw InputError(fmt::format(
-        "the {} has {} value{} that {} not finite; the first is {} at pixel ({}, {})", which, count,
-        count == 1 ? "" : "s", count == 1 ? "is" : "are", *first,
-        pixel % static_cast<std::size_t>(image.width), pixel / static_cast<std::size_t>(image.width)));
+    throw InputError(
+        Location{file},
+        fmt::format("the {} has {} value{} that {} not finite; the first is {} at pixel ({}, {})", which,
+                    count, count == 1 ? "" : "s", count == 1 ? "is" : "are", *first,
+                    pixel % static_cast<std::size_t>(image.width),
+                    pixel / static_cast<std::size_t>(image.width)));
 }
+
+namespace {
 
 bool counts(const Image* mask, std::size_t pixel) { return mask == nullptr || mask->values[pixel] > 0.5F; }
 

@@ -1,8 +1,13 @@
 // Errors between two images of one size: MSE, RMSE, PSNR, SSIM.
 #pragma once
 #include "image/image.h"
+#include <string>
 
 namespace kestrel {
+
+// Throws InputError if a value is not finite, naming the file where there is one, `which` image it is
+// ("reference"), how many values are so, and the first one's pixel.
+void requireFinite(const Image& image, const std::string& which, const std::string& file = {});
 
 // Throws InputError if the images differ in size (naming both sizes) or hold values that are not finite
 // (naming the first pixel), or if the mask has another size, more than one channel, or no value above 0.5.

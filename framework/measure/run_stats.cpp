@@ -48,7 +48,9 @@ std::string statsJson(const RunStats& stats) {
     for (const LeftOut& item : stats.leftOut) leftOut.push_back({{"what", item.what}, {"why", item.why}});
     OutJson json = {
         {"graph", stats.graph},
+        {"graph_path", stats.graphPath},
         {"scene", stats.scene},
+        {"scene_path", stats.scenePath},
         {"camera", stats.camera},
         {"size", {stats.size.width, stats.size.height}},
         {"frames", stats.frames},

@@ -9,6 +9,7 @@ namespace kestrel {
 
 struct RunStats {
     std::string graph, scene, camera;
+    std::string graphPath, scenePath; // where they lie; set by the caller, who knows
     Extent size;
     int frames = 0;
     std::uint32_t seed = 0;

@@ -38,7 +38,13 @@ std::string renderCommand(const Sweep& sweep, const SweepScene& scene, const Swe
                                    "--scene"};
     const bool builtin = scene.source.starts_with("builtin:");
     words.push_back(builtin ? scene.source : fromAnywhere(sweepSceneFile(sweep, scene)));
-    if (!scene.camera.empty()) words.insert(words.end(), {"--camera", scene.camera});
+    const SceneSetup setup = located(scene.setup, sweep.file.parent_path());
+    if (!setup.cameraName.empty()) words.insert(words.end(), {"--camera", setup.cameraName});
+    if (setup.camera) words.insert(words.end(), {"--camera", cameraText(*setup.camera)});
+    for (const AddedLight& light : setup.lights) words.insert(words.end(), {"--light", lightText(light)});
+    if (!setup.animation.empty()) words.insert(words.end(), {"--animation", setup.animation});
+    if (setup.time) words.insert(words.end(), {"--time", fmt::format("{}", *setup.time)});
+    if (setup.fps) words.insert(words.end(), {"--fps", fmt::format("{}", *setup.fps)});
     if (sweep.allowOutside) words.push_back("--allow-outside");
     words.insert(words.end(), {"--size", fmt::format("{}x{}", sweep.size.width, sweep.size.height),
                                "--frames", std::to_string(point.frames)});

@@ -64,6 +64,12 @@ void readVariant(SweepReading& reading, const Json& json) {
 
 } // namespace
 
+std::string cameraOf(const SweepScene& scene) {
+    const SceneSetup& setup = scene.setup;
+    if (!setup.camera) return setup.cameraName;
+    return setup.camera->name.empty() ? cameraText(*setup.camera) : setup.camera->name;
+}
+
 std::string readSweepText(SweepReading& reading, const Json& json) {
     if (json.text.size() > maxGraphText)
         reading.note(json.where,
@@ -82,7 +88,7 @@ std::string readSweepName(SweepReading& reading, const Json& json, const std::st
 
 std::optional<int> readSweepWhole(SweepReading& reading, const Json& json, const std::string& key,
                                   int minimum, int maximum) {
-    if (json.kind == Json::Kind::Int && json.integer >= minimum && json.integer <= maximum)
+    if (json.isWhole() && json.integer >= minimum && json.integer <= maximum)
         return static_cast<int>(json.integer);
     reading.note(json.where, fmt::format("'{}' must be a whole number from {} to {}", key, minimum, maximum));
     return std::nullopt;
@@ -108,7 +114,7 @@ std::vector<SweepSetting> readSweepSettings(SweepReading& reading, const Json& j
 
 void readSweepSize(SweepReading& reading, const Json& size, Sweep& sweep) {
     const auto side = [](const Json& json) {
-        return json.kind == Json::Kind::Int && json.integer >= 1 && json.integer <= maxSweepSide;
+        return json.isWhole() && json.integer >= 1 && json.integer <= maxSweepSide;
     };
     if (size.kind == Json::Kind::Array && size.items.size() == 2 && side(size.items[0]) &&
         side(size.items[1]))
@@ -158,7 +164,9 @@ void readSweepScenes(SweepReading& reading, const Json& scenes, Sweep& sweep) {
             const bool builtin = scene.source.starts_with("builtin:");
             scene.name =
                 builtin ? scene.source.substr(8) : std::filesystem::path(scene.source).filename().string();
-            if (!scene.camera.empty()) scene.name += ", " + scene.camera;
+            const std::string& camera =
+                scene.setup.camera ? scene.setup.camera->name : scene.setup.cameraName;
+            if (!camera.empty()) scene.name += ", " + camera;
         }
         if (std::ranges::any_of(sweep.scenes, [&](const auto& other) { return other.name == scene.name; }))
             reading.note(item.where,
@@ -193,6 +201,11 @@ Sweep parseSweep(std::string_view text, const std::string& file) {
     return sweep;
 }
 
-Sweep loadSweep(const std::filesystem::path& file) { return parseSweep(readText(file), file.string()); }
+Sweep loadSweep(const std::filesystem::path& file) {
+    Sweep sweep = parseSweep(readGivenText(file), file.string());
+    // What comes through a pipe lies nowhere: graphs and scenes are named from the working folder.
+    if (isStream(file)) sweep.file = file.filename();
+    return sweep;
+}
 
 } // namespace kestrel

@@ -28,10 +28,12 @@ struct SweepSetting {
 struct SweepScene {
     std::string name;   // of plots and file names: the file's, else the source's without "builtin:"
     std::string source; // "builtin:NAME", or a file: absolute, or relative to the folder of the sweep file
-    std::string camera; // may be empty
-    std::string slug;   // unique, for file names
+    SceneSetup setup;
+    std::string slug; // unique, for file names
     Location where;
 };
+// The camera's name; of one that the sweep adds its keys; empty: the graph's, else the scene's first.
+std::string cameraOf(const SweepScene& scene);
 
 // What pictures are held against: run once a scene.
 struct SweepReference {

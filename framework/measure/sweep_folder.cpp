@@ -178,7 +178,7 @@ SweepResults SweepFolder::gather(const std::vector<SweepPoint>& points,
             }
             SweepRow row;
             row.scene = scene.name;
-            row.camera = scene.camera;
+            row.camera = cameraOf(scene);
             row.point = point.name;
             row.variant = point.variant;
             row.series = point.series;

@@ -109,7 +109,7 @@ RowJson machinesJson(const SweepResults& results) {
 RowJson documentJson(const Sweep& sweep, const SweepResults& results) {
     RowJson scenes = RowJson::array(), rows = RowJson::array(), times = RowJson::array();
     for (const SweepScene& scene : sweep.scenes) {
-        RowJson json = {{"name", scene.name}, {"source", scene.source}, {"camera", scene.camera}};
+        RowJson json = {{"name", scene.name}, {"source", scene.source}, {"camera", cameraOf(scene)}};
         if (const auto record = results.references.find(scene.name); record != results.references.end()) {
             json["reference"] = record->second.picture;
             json["reference_noise"] = optionalNumber(record->second.noise);

@@ -1,5 +1,6 @@
 // The tables of keys. A key that is added here is read, checked, and stands in the schema.
 #include "measure/sweep_keys.h"
+#include "scene/setup_keys.h"
 
 namespace kestrel {
 namespace {
@@ -63,11 +64,17 @@ const std::vector<std::string>& sweepErrors() {
 }
 
 const SweepKeys<SweepScene>& sweepSceneKeys() {
-    static const auto keys = SweepKeys<SweepScene>()
-                                 .text("source", &SweepScene::source, sceneSource)
-                                 .required()
-                                 .text("camera", &SweepScene::camera, "A camera of the scene by its name")
-                                 .label("name", &SweepScene::name, "name of a scene", "Of plots and files");
+    static const auto keys = [] {
+        SweepKeys<SweepScene> made;
+        made.text("source", &SweepScene::source, sceneSource).required();
+        made.label("name", &SweepScene::name, "name of a scene", "Of plots and files");
+        for (const auto& key : sceneSetupKeys().keys())
+            made.custom(key.name, key.kind, key.schema,
+                        [read = key.read](SweepReading& reading, const Json& json, SweepScene& into) {
+                            read(reading.problems, json, into.setup);
+                        });
+        return made;
+    }();
     return keys;
 }
 

@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "core/hash.h"
 #include "scene/gltf_container.h"
+#include "scene/setup_keys.h"
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -132,7 +133,12 @@ SweepManifest::SweepManifest(const Sweep& sweep, std::string machine)
         facts_["the rays"]["all"] = std::move(facts);
     }
     for (const SweepScene& scene : sweep.scenes) {
-        FactJson facts = {{"name", scene.name}, {"camera", scene.camera}};
+        // Each key of the setup, also where it is not given: that it is given now is a change.
+        FactJson facts = {{"name", scene.name}};
+        for (const auto& key : sceneSetupKeys().keys()) facts[key.name] = key.write(scene.setup);
+        facts["camera"] = scene.setup.camera ? cameraText(*scene.setup.camera) : scene.setup.cameraName;
+        if (scene.setup.camera && !scene.setup.camera->path.empty())
+            facts["path"] = contentOf(located(scene.setup, sweep.file.parent_path()).camera->path);
         if (const auto content = sceneContent(sweep, scene)) facts["content"] = *content;
         facts_["scene"][scene.slug] = std::move(facts);
     }

@@ -193,6 +193,12 @@ void checkSweepScenes(const Sweep& sweep) {
             !std::filesystem::exists(sweepSceneFile(sweep, scene), ignored))
             problems.push_back({scene.where, fmt::format("there is no scene file '{}'",
                                                          sweepSceneFile(sweep, scene).string())});
+    for (const SweepScene& scene : sweep.scenes) {
+        if (!scene.setup.camera || scene.setup.camera->path.empty()) continue;
+        const std::string path = located(scene.setup, sweep.file.parent_path()).camera->path;
+        if (!std::filesystem::exists(path, ignored))
+            problems.push_back({scene.where, fmt::format("there is no file '{}' of a camera's path", path)});
+    }
     if (!problems.empty()) throw InputError(std::move(problems));
 }
 

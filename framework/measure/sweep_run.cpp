@@ -121,9 +121,8 @@ private:
         }
         const SweepScene& scene = sweep_.scenes[static_cast<size_t>(unit.scene)];
         tell(scene.name, false);
-        loaded_ = loadScene(scene.source, sweep_.file.has_parent_path() ? sweep_.file.parent_path() : ".",
-                            {.allowOutside = sweep_.allowOutside});
-        for (const std::string& warning : loaded_.warnings) logWarning("{}: {}", scene.name, warning);
+        scene_ = &scene;
+        loadedSetup_.reset();
         takeReference(scene);
 
         std::vector<Candidate> candidates;
@@ -132,7 +131,7 @@ private:
             const SweepPoint& point = points_[static_cast<size_t>(index)];
             tell(scene.name + ": " + point.name, false);
             Candidate candidate{&point, nullptr};
-            if (measurePicture(unit, scene, candidate)) {
+            if (measurePicture(unit, candidate)) {
                 if (candidate.renderer) {
                     const MemoryReport& memory = candidate.renderer->plan().memory;
                     held += memory.transient + memory.persistent;
@@ -163,34 +162,53 @@ private:
 
     // ---- renderers
 
-    [[nodiscard]] std::unique_ptr<Renderer> open(const std::string& graph,
+    // The unit's scene under a setup. Graphs seldom set it up differently: the last one is kept.
+    const Scene& sceneUnder(const SceneSetup& setup) {
+        std::string text = setupText(setup);
+        if (loadedSetup_ == text) return loaded_;
+        loaded_ = loadScene(scene_->source, sweepFolder(), {.allowOutside = sweep_.allowOutside}, setup);
+        for (const std::string& warning : loaded_.warnings)
+            if (warned_.insert(scene_->name + warning).second) logWarning("{}: {}", scene_->name, warning);
+        loadedSetup_ = std::move(text);
+        return loaded_;
+    }
+
+    [[nodiscard]] std::filesystem::path sweepFolder() const {
+        return sweep_.file.has_parent_path() ? sweep_.file.parent_path() : ".";
+    }
+
+    [[nodiscard]] std::unique_ptr<Renderer> open(const std::string& graphName,
                                                  const std::vector<SweepSetting>& settings,
-                                                 const std::vector<PortRef>& outputs, const Location& where,
-                                                 const std::string& camera) const {
+                                                 const std::vector<PortRef>& outputs, const Location& where) {
         RenderOptions options;
         options.size = sweep_.size;
         options.seed = sweep_.seed;
-        options.camera = camera;
         options.timing = true;
         options.finishFrames = true;
+        Graph graph = sweepGraph(sweep_, graphName, settings, outputs, registry_, where);
+        // As renderCommand() has it: what the sweep says of the scene counts before what the graph says.
+        graph.sceneSetup = joined(located(std::move(graph.sceneSetup), graph.file.parent_path()),
+                                  located(scene_->setup, sweepFolder()));
+        const Scene& scene = sceneUnder(graph.sceneSetup);
         auto renderer =
-            std::make_unique<Renderer>(sweepGraph(sweep_, graph, settings, outputs, registry_, where),
-                                       registry_, loaded_, context_.capabilities(), options);
+            std::make_unique<Renderer>(std::move(graph), registry_, scene, context_.capabilities(), options);
         renderer->setPaused(!sweep_.moving);
         return renderer;
     }
 
     // When the last frame of a moving picture is.
-    [[nodiscard]] double timeOfPicture(double duration) const {
-        double time = 0;
-        for (int i = 1; i < sweep_.frames; ++i) time = timeAfter(time, duration);
+    [[nodiscard]] double timeOfPicture(const Renderer& renderer) const {
+        const Scene& scene = renderer.scene();
+        double time = scene.startTime;
+        for (int i = 1; i < sweep_.frames; ++i)
+            time = timeAfter(time, renderer.facts().duration, scene.frameRate);
         return time;
     }
 
-    [[nodiscard]] std::unique_ptr<Renderer> open(const SweepPoint& point, const std::string& camera) const {
+    [[nodiscard]] std::unique_ptr<Renderer> open(const SweepPoint& point) {
         std::vector<PortRef> outputs{point.output};
         if (point.ray) outputs.push_back(sweep_.rays->rays);
-        return open(point.graph, point.settings, outputs, point.where, camera);
+        return open(point.graph, point.settings, outputs, point.where);
     }
 
     static std::map<std::string, double> reportsOf(const Renderer& renderer) {
@@ -241,9 +259,9 @@ private:
         tell(scene.name + ": the reference", false);
         std::vector<PortRef> outputs{asked.output};
         if (asked.mask) outputs.push_back(*asked.mask);
-        const auto renderer = open(asked.graph, asked.settings, outputs, asked.where, scene.camera);
+        const auto renderer = open(asked.graph, asked.settings, outputs, asked.where);
         renderer->setPaused(true);
-        if (sweep_.moving) renderer->setTime(timeOfPicture(renderer->facts().duration));
+        if (sweep_.moving) renderer->setTime(timeOfPicture(*renderer));
         for (int i = 0; i < asked.frames; ++i) static_cast<void>(renderer->frame());
         reference_ = renderer->read(asked.output);
         if (asked.mask) mask_ = convertChannels(renderer->read(*asked.mask), 1);
@@ -262,8 +280,7 @@ private:
     void traceReference(const SweepScene& scene) {
         const SweepRays& asked = *sweep_.rays;
         tell(scene.name + ": the reference's rays", false);
-        const auto renderer =
-            open(asked.graph, asked.settings, {asked.hits, asked.rays}, asked.where, scene.camera);
+        const auto renderer = open(asked.graph, asked.settings, {asked.hits, asked.rays}, asked.where);
         for (int i = 0; i < asked.frames; ++i) static_cast<void>(renderer->frame());
         const std::vector<std::byte> rays = renderer->readBytes(asked.rays);
         distances_ = hitDistances(renderer->readBytes(asked.hits), rays);
@@ -276,12 +293,11 @@ private:
     // ---- pictures
 
     // False if it failed. A renderer is left in the candidate where it was needed.
-    bool measurePicture(const SweepUnit& unit, const SweepScene& scene, Candidate& candidate) {
+    bool measurePicture(const SweepUnit& unit, Candidate& candidate) {
         const SweepPoint& point = *candidate.point;
-        camera_ = scene.camera;
         if (const auto held = folder_.picture(unit, point)) {
             if (!held->failed.empty()) return false;
-            candidate.renderer = open(point, camera_);
+            candidate.renderer = open(point);
             static_cast<void>(candidate.renderer->frame());
             return true;
         }
@@ -302,7 +318,7 @@ private:
     void makePicture(const SweepUnit& unit, Candidate& candidate, SweepPicture& picture) {
         const SweepPoint& point = *candidate.point;
         const auto start = SweepClock::now();
-        candidate.renderer = open(point, camera_);
+        candidate.renderer = open(point);
         Renderer& renderer = *candidate.renderer;
         static_cast<void>(renderer.frame());
         picture.setUpMs = msSince(start);
@@ -346,7 +362,7 @@ private:
 
     std::vector<SweepFrame> timeTurn(Candidate& candidate) {
         std::unique_ptr<Renderer> own;
-        if (!candidate.renderer) own = open(*candidate.point, camera_);
+        if (!candidate.renderer) own = open(*candidate.point);
         Renderer& renderer = own ? *own : *candidate.renderer;
         // A renderer that was just made has everything to build in its first frame.
         const int warmUp = sweep_.warmUp + (own && sweep_.warmUp == 0 ? 1 : 0);
@@ -378,8 +394,10 @@ private:
     std::function<void(double, const std::string&)> progress_;
     int work_ = 1, done_ = 0;
 
+    const SweepScene* scene_ = nullptr; // of the unit
     Scene loaded_;
-    std::string camera_;
+    std::optional<std::string> loadedSetup_; // of loaded_
+    std::set<std::string> warned_;
     SweepReferenceRecord referenceRecord_;
     Image reference_, mask_;
     std::vector<float> distances_; // of the reference's hits

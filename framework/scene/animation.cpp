@@ -120,7 +120,10 @@ double Scene::duration() const {
     for (const Animation& animation : animations)
         for (const AnimationChannel& channel : animation.channels)
             if (!channel.times.empty()) last = std::max(last, channel.times.back());
-    return double(last);
+    double end = double(last);
+    for (const Camera& camera : cameras)
+        if (!camera.path.empty()) end = std::max(end, camera.path.back().time);
+    return end;
 }
 
 std::vector<double> sampleChannel(const AnimationChannel& channel, double time) {

@@ -45,8 +45,9 @@ void nameCamerasApart(std::vector<Camera>& cameras) {
 
 int cameraIndex(const Scene& scene, const std::string& name) {
     std::vector<std::string> names;
+    if (name.empty() && !scene.cameras.empty()) return scene.camera;
     for (size_t i = 0; i < scene.cameras.size(); ++i) {
-        if (name.empty() || scene.cameras[i].name == name) return static_cast<int>(i);
+        if (scene.cameras[i].name == name) return static_cast<int>(i);
         names.push_back(scene.cameras[i].name);
     }
     const std::optional<size_t> index = wholeNumber(name);

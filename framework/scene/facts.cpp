@@ -100,7 +100,8 @@ SceneFacts gatherFacts(const Scene& scene) {
     countGeometry(scene, facts);
     countLights(scene, moving, facts);
     for (const Camera& camera : scene.cameras) {
-        facts.cameraMoves |= camera.node >= 0 && moving[static_cast<size_t>(camera.node)];
+        facts.cameraMoves |=
+            camera.path.size() > 1 || (camera.node >= 0 && moving[static_cast<size_t>(camera.node)]);
         facts.cameras.push_back(camera.name);
     }
     facts.materials = static_cast<std::uint32_t>(scene.materials.size());

@@ -114,7 +114,8 @@ CameraState cameraAt(const Scene& scene, int camera, double time);
 // The lights at `time`, in the order of Scene::lights. The scale s of Scene::rootTransform multiplies range
 // and size, and by s * s the candela of Point and Spot, so that a scaled scene is lit alike.
 std::vector<LightState> lightsAt(const Scene& scene, double time);
-// Index of the camera of that name; of a number that is no camera's name: itself, from 0; empty: the first.
+// Index of the camera of that name; of a number that is no camera's name: itself, from 0; empty:
+// Scene::camera.
 // Throws InputError with the near name and the names there are.
 int cameraIndex(const Scene& scene, const std::string& name);
 

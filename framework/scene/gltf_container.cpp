@@ -57,9 +57,13 @@ nlohmann::json parseJson(const fs::path& path, std::string_view text, std::uint6
         const size_t tail = what.rfind(": ");
         throw InputError(locationOf(path, text, error.byte),
                          fmt::format("is not JSON: {}", what.substr(tail == what.npos ? 0 : tail + 2)));
-    } catch (const nlohmann::json::exception&) {
-        // The only other one is a number beyond the range of double.
-        throw InputError(Location{path.string()}, "is not JSON: a number is out of range");
+    } catch (const nlohmann::json::exception& error) {
+        // The only other one is a number beyond the range of double: "number overflow parsing '1e400'".
+        const std::string_view what = error.what();
+        const size_t quote = what.find('\'');
+        throw InputError(
+            Location{path.string()},
+            fmt::format("a number is too large: {}", quote == what.npos ? what : what.substr(quote)));
     }
 }
 

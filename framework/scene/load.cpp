@@ -2,6 +2,7 @@
 #include "scene/builtin.h"
 #include "scene/gltf_import.h"
 #include "scene/scene.h"
+#include "scene/setup.h"
 #include <algorithm>
 #include <cctype>
 #include <vector>
@@ -20,6 +21,11 @@ namespace {
 } // namespace
 
 Scene loadScene(const std::string& source, const std::filesystem::path& folder, const SceneOptions& options) {
+    return loadScene(source, folder, options, {});
+}
+
+Scene loadScene(const std::string& source, const std::filesystem::path& folder, const SceneOptions& options,
+                const SceneSetup& setup) {
     Scene scene;
     if (isBuiltin(source)) {
         scene = builtinScene(source);
@@ -32,7 +38,7 @@ Scene loadScene(const std::string& source, const std::filesystem::path& folder, 
         scene = importGltf(path, options);
     }
     scene.source = source;
-    finishScene(scene);
+    setUpScene(scene, setup, folder);
     return scene;
 }
 

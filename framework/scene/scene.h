@@ -52,7 +52,15 @@ struct Skin {
     friend bool operator==(const Skin&, const Skin&) = default;
 };
 
-// A pinhole camera. It looks along -z of its node, y up.
+// Where a camera stands and looks at one time, in the space of its node.
+struct CameraKey {
+    double time = 0; // seconds
+    glm::dvec3 eye{0}, target{0, 0, -1}, up{0, 1, 0};
+    double verticalFov = 0.8; // radians
+    friend bool operator==(const CameraKey&, const CameraKey&) = default;
+};
+
+// A pinhole camera. It looks along -z of its node, y up, or as its path says.
 struct Camera {
     std::string name;
     bool orthographic = false;
@@ -61,6 +69,9 @@ struct Camera {
     float halfHeight = 1;                    // orthographic
     float nearPlane = 0.01f, farPlane = 100; // in scene units; far <= 0: infinite
     int node = -1;
+    // Strictly rising times; the first holds before, the last after. Its fields of view replace verticalFov.
+    std::vector<CameraKey> path = {};
+    bool smooth = false; // between keys a cubic curve through them (Catmull-Rom), else straight lines
     friend bool operator==(const Camera&, const Camera&) = default;
 };
 
@@ -134,9 +145,12 @@ struct Scene {
     // World-space point that all float coordinates (Geometry, cameras, lights on the GPU) are relative to:
     // the centre of the bounds over the whole timeline. Set by finishScene().
     glm::dvec3 origin{0};
+    int camera = 0;        // the one that is taken where nobody names one
+    double startTime = 0;  // seconds: the time of the first frame
+    double frameRate = 60; // frames a second of its time
 
-    // Seconds from 0 to the last key of any animation; 0 if nothing is animated. All animations play
-    // together.
+    // Seconds from 0 to the last key of any animation or camera's path; 0 if nothing is animated. All
+    // animations play together (SceneSetup::animation chooses one).
     [[nodiscard]] double duration() const;
 };
 

@@ -64,10 +64,10 @@ Declaration DebugView::declareTexture(const Desc& desc) const {
     Declaration declaration;
     if (layer >= static_cast<int>(desc.extent.depth) && desc.kind == ResourceKind::Texture2DArray)
         declaration.problems.push_back(
-            {"source", fmt::format("has {} layers, so there is no layer {}", desc.extent.depth, layer)});
+            {"layer", fmt::format("is {}, but source has {} layers", layer, desc.extent.depth)});
     if (mip >= desc.mips)
         declaration.problems.push_back(
-            {"source", fmt::format("has {} mip levels, so there is no level {}", desc.mips, mip)});
+            {"mip", fmt::format("is {}, but source has {} mip levels", mip, desc.mips)});
     const Extent extent{std::max(1u, desc.extent.width >> mip), std::max(1u, desc.extent.height >> mip), 1};
     declaration.outputs.push_back(
         {.port = "image", .desc = Desc::texture2D(Format::RGBA8, extent, desc.view)});

@@ -64,13 +64,13 @@ Declaration OccupancyMap::declare(const World& world, const Inputs&, const Deman
     Declaration declaration;
     if (!isOccupancyResolution(resolution)) {
         declaration.problems.push_back(
-            {"", fmt::format("resolution must be 32, 64, 128 or 256, not {}", resolution)});
+            {"resolution", fmt::format("must be 32, 64, 128 or 256, not {}", resolution)});
         return declaration;
     }
     const char* extension = neededExtension(method);
     if (extension && !world.capabilities.has(extension)) {
         declaration.problems.push_back(
-            {"", fmt::format("this method needs {}, which this context lacks", extension), true});
+            {"method", fmt::format("needs {}, which this context lacks", extension), true});
         return declaration;
     }
     const bool empty = world.facts.triangles == 0 || !hasExtent(world.facts.sphere, resolution);

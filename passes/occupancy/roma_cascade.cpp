@@ -72,7 +72,7 @@ Declaration RomaCascade::declare(const World& world, const Inputs&, const Demand
     Declaration declaration;
     if (!isOccupancyResolution(resolution)) {
         declaration.problems.push_back(
-            {"", fmt::format("resolution must be 32, 64, 128 or 256, not {}", resolution)});
+            {"resolution", fmt::format("must be 32, 64, 128 or 256, not {}", resolution)});
         return declaration;
     }
     const AlignedMaps maps = alignedMaps(resolution, angular, levels, world.capabilities, declaration);

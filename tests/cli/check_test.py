@@ -71,6 +71,40 @@ def test_check_tells_every_mistake_with_its_place():
         assert "bad.json:2:" in refused("check", file, *BLOB)[0]
 
 
+def test_check_reports_a_value_where_it_stands():
+    with folder() as here:
+        file = Path(here) / "graph.json"
+        text = Path(RAY_AO).read_text()
+        line = next(i for i, line in enumerate(text.splitlines(), 1) if '"resolution": 128' in line)
+        for value, said in [("100", "must be 32, 64, 128 or 256, not 100"), ("1e400", "the number 1e400 is too large"),
+                            ("100.5", "must be a whole number, not a number")]:
+            file.write_text(text.replace('"resolution": 128', f'"resolution": {value}'))
+            lines = refused("check", file, *BLOB, "--minimum", "--no-shaders")
+            assert f"graph.json:{line}:" in lines[0] and said in lines[0], lines
+        file.write_text(text.replace('"resolution": 128', '"resolution": 128.0'))
+        done("check", file, *BLOB, "--minimum", "--no-shaders")
+        done("check", RAY_AO, *BLOB, "--minimum", "--no-shaders", "--set", "bom.resolution=128.0")
+        assert "1e400" in refused("check", RAY_AO, *BLOB, "--set", "bom.resolution=1e400")[0]
+
+
+def test_check_wants_outputs_and_suffers_a_pass_that_is_not_connected():
+    with folder() as here:
+        file = Path(here) / "graph.json"
+        graph = json.loads(Path(RAY_AO).read_text())
+        graph["passes"]["spare"] = {"type": "Roma"}
+        file.write_text(json.dumps(graph))
+        out = done("check", file, *BLOB, "--minimum", "--no-shaders").out
+        assert "left out: spare, because its input 'occupancy' is not connected" in out, out
+        done("check", file, *BLOB, "--minimum", "--no-shaders", "--keep-all")
+        line = refused("render", file, *BLOB, "--output", "spare.maps=x.bin")[0]
+        assert "is not connected" in line or "spare" in line, line
+        del graph["passes"]["spare"]
+        graph["outputs"] = []
+        file.write_text(json.dumps(graph))
+        assert "has no outputs" in refused("check", file, *BLOB, "--minimum", "--no-shaders")[0]
+        assert "has no outputs" in refused("render", file, *BLOB)[0]
+
+
 def test_check_tells_the_first_cause_of_what_cannot_be_made():
     too_much = ["--set", "bom.resolution=256", "--set", "roma.angular=16"]
     line = refused("check", RAY_AO, *BLOB, "--minimum", *too_much)[0]

@@ -49,6 +49,14 @@ def refused(*arguments, status=2, **options):
     return result.lines()
 
 
+def shell(command):
+    """Runs a line of bash, in which $KESTREL is the program; it must succeed."""
+    run = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, timeout=110,
+                         env={**os.environ, "KESTREL": KESTREL})
+    assert run.returncode == 0, f"status {run.returncode}: {run.stderr}"
+    return run
+
+
 def folder():
     return tempfile.TemporaryDirectory(prefix="kestrel_cli_")
 

@@ -2,7 +2,7 @@
 import json
 from pathlib import Path
 
-from kestrel_cli import RAY_AO, SMALL, done, files_in, folder, kestrel, need_part, refused, run_tests
+from kestrel_cli import RAY_AO, SMALL, SOURCE, done, files_in, folder, kestrel, need_part, refused, run_tests, shell
 
 
 def test_writes_the_outputs_under_their_names():
@@ -37,6 +37,7 @@ def test_stats_have_the_stated_keys():
     with folder() as out:
         done("render", RAY_AO, *SMALL, "--frames", 4, "--seed", 3, "--out", out, "--stats", f"{out}/s.json")
         stats = json.loads((Path(out) / "s.json").read_text())
+        assert stats["graph_path"] == RAY_AO and stats["scene_path"] == "builtin:tower?detail=0.05"
         for key in ["graph", "scene", "size", "frames", "seed", "renderer", "driver", "clock", "spin", "passes",
                     "frame_ms", "left_out", "memory"]:
             assert key in stats, key
@@ -83,6 +84,108 @@ def test_writes_nothing_when_something_fails():
         refused("render", RAY_AO, *SMALL, "--out", f"{out}/b", "--output", "mean.reslut=x.png")
         refused("render", RAY_AO, *SMALL, "--out", f"{out}/c", "--camera", "nobody")
         assert files_in(out) == []
+
+
+def test_says_what_cannot_be_written_before_the_first_frame():
+    with folder() as here:
+        Path(here, "file").write_text("")
+        for option, value in [("--out", "file/x"), ("--output", "mean.result=file/x.png"), ("--stats", "file/s.json"),
+                              ("--stats", ".")]:
+            # So many frames would take minutes.
+            line = refused("render", RAY_AO, *SMALL, "--frames", 100_000, option, value, folder=here)[0]
+            assert "cannot be written" in line and value.split("=")[-1].split("/")[0] in line, line
+        assert "--out" in refused("render", RAY_AO, *SMALL, "--out", "")[0]
+        assert "--stats" in refused("render", RAY_AO, *SMALL, "--stats", "")[0]
+        lines = refused("render", RAY_AO, *SMALL, "--output", "mean.result=a.png", "--output", "ao.visibility=./a.png", folder=here)
+        assert "two outputs would go into" in lines[0], lines
+        assert files_in(here) == ["file"]
+
+
+def test_quiet_says_nothing():
+    with folder() as here:
+        assert done("-q", "render", RAY_AO, *SMALL, "--out", here).out == ""
+        assert done("check", RAY_AO, *SMALL, "-q", "--minimum", "--no-shaders").out == ""
+        picture = f"{here}/mean.result.png"
+        assert done("-q", "compare", picture, picture).out == ""
+        assert json.loads(done("-q", "compare", picture, picture, "--json").out)["mse"] == 0
+
+
+def test_a_sequence_has_a_file_for_each_frame():
+    with folder() as here:
+        run = ["render", RAY_AO, *SMALL]
+        out = done(*run, "--frames", 5, "--output", f"mean.result={here}/f_%03d.exr", "--every", 2,
+                   "--output", f"ao.visibility={here}/last.exr").out
+        assert files_in(here) == ["f_000.exr", "f_002.exr", "f_004.exr", "last.exr"], files_in(here)
+        assert "f_004.exr" in out
+        # Each is what a run that ends there writes.
+        done(*run, "--frames", 3, "--output", f"mean.result={here}/three.exr")
+        assert Path(here, "three.exr").read_bytes() == Path(here, "f_002.exr").read_bytes()
+        done(*run, "--frames", 3, "--every", 2, "--out", f"{here}/all")
+        assert files_in(f"{here}/all") == ["mean.result.0000.png", "mean.result.0002.png"]
+        done(*run, "--output", f"mean.result={here}/100%%.png")
+        assert Path(here, "100%.png").exists()
+        for name in ["%s.png", "%.png", "%d_%d.png", "%-3d.png"]:
+            assert "'%' begins the number of the frame" in refused(*run, "--output", f"mean.result={here}/{name}")[0]
+        assert "--every" in refused(*run, "--every", 2, "--output", f"mean.result={here}/x.png")[0]
+
+
+def test_graphs_and_pictures_go_through_pipes():
+    small = " ".join(f"'{word}'" for word in SMALL)
+    with folder() as here:
+        shell(f"cat {RAY_AO} | $KESTREL render - {small} --output mean.result=exr:- > {here}/a.exr")
+        done("render", RAY_AO, *SMALL, "--output", f"mean.result={here}/b.exr")
+        assert Path(here, "a.exr").read_bytes() == Path(here, "b.exr").read_bytes()
+        shell(f"$KESTREL render <(cat {RAY_AO}) {small} --output mean.result=- | $KESTREL compare - "
+              f"<($KESTREL -q render {RAY_AO} {small} --output mean.result=/dev/stdout) --max mse=0")
+        stats = shell(f"$KESTREL render {RAY_AO} {small} --out {here} --stats -").stdout
+        assert json.loads(stats)["frames"] == 1, "the report goes to standard error"
+        assert Path("/dev/stdout").is_symlink()
+        two = ["--output", "mean.result=-", "--stats", "-"]
+        assert "two outputs" in refused("render", RAY_AO, *SMALL, *two)[0]
+
+
+def test_a_scene_gains_cameras_and_lights():
+    with folder() as here:
+        graph = SOURCE / "graphs" / "direct_light.json"
+        dark = ["render", graph, "--scene", f"{here}/dark.gltf", "--size", "64x36"]
+        Path(here, "dark.gltf").write_text(json.dumps(floor()))
+        above = ["--camera", "eye=0,5,0 target=0,0,0 fov=30"]
+        done(*dark, *above, "--output", f"direct.result={here}/dark.exr", "--out", here)
+        done(*dark, *above, "--light", "directional direction=0,-1,0 intensity=3", "--light",
+             "point position=0,1,0 intensity=0", "--output", f"direct.result={here}/lit.exr")
+        lit = done("compare", f"{here}/dark.exr", f"{here}/lit.exr", "--json").json()
+        # A white diffuse floor, seen straight on: 3 / pi on every pixel.
+        assert abs(lit["rmse"] - 3 / 3.14159265) < 0.01, lit
+        lines = refused(*dark, "--camera", "eye=0,5 target=0,0,0", "--light", "sun direction=0,-1,0")
+        assert len(lines) == 2 and "'eye'" in lines[0] and "'sun'" in lines[1], lines
+        assert "did you mean 'floor'" in refused(*dark, "--camera", "node=flor")[0]
+        assert "'walk'" in refused(*dark, "--animation", "walk")[0]
+
+
+def test_time_goes_on_as_it_is_told():
+    with folder() as here:
+        run = ["render", RAY_AO, "--scene", "builtin:skinned?detail=0.1", "--size", "64x36"]
+        done(*run, "--fps", 4, "--frames", 4, "--output", f"gbuffer.normal={here}/f_%d.exr")
+        done(*run, "--time", 0.75, "--still", "--frames", 2, "--output", f"gbuffer.normal={here}/there.exr")
+        done(*run, "--animation", "none", "--fps", 4, "--frames", 4, "--output", f"gbuffer.normal={here}/rest_%d.exr")
+        read = lambda name: Path(here, name).read_bytes()
+        assert read("f_0.exr") != read("f_3.exr") == read("there.exr")
+        assert read("rest_0.exr") == read("rest_3.exr")
+        late = kestrel(*run, "--time", 1000, "--output", f"gbuffer.normal={here}/late.exr")
+        assert late.status == 0 and "lies after the end of the scene's timeline" in late.err, late.err
+
+
+def floor():
+    """A glTF document: a square of 20 at y = 0, upward, white and rough; no camera, no light."""
+    import base64, struct
+    corners = struct.pack("<12f", -10, 0, -10, -10, 0, 10, 10, 0, 10, 10, 0, -10) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    return {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"name": "floor", "mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+            "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1}}],
+            "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64," + base64.b64encode(corners).decode()}],
+            "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-10, 0, -10],
+                           "max": [10, 0, 10]}, {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}]}
 
 
 def test_refuses_what_it_does_not_know():

@@ -120,6 +120,34 @@ def test_its_commands_make_its_pictures_again_from_anywhere():
         done(*words_of(row["times_command"])[1:], "--list", folder=reader)
 
 
+def test_a_scene_of_a_sweep_gains_a_camera_and_lights_and_its_commands_say_so():
+    need_part("embree")
+    with folder() as here, folder() as reader:
+        study = Path(here) / "study"
+        study.mkdir()
+        (study / "orbit.json").write_text(json.dumps({"kestrel_camera": 1, "target": [0, 1, 0], "fov": 50,
+                                                      "keys": [{"time": 0, "eye": [4, 2, 0]}, {"time": 2, "eye": [0, 2, 4]}]}))
+        blob = "builtin:blob?detail=0.05"
+        scenes = [{"name": "orbit", "source": blob, "camera": {"path": "orbit.json"}, "time": 1, "fps": 30,
+                   "lights": [{"kind": "directional", "direction": [0, -1, 0]}]},
+                  {"name": "above", "source": blob, "camera": {"eye": [0, 6, 0], "target": [0, 0, 0]}}]
+        file = tiny(study, scenes=scenes, variants=[TINY["variants"][1]], rays=TINY["rays"])
+        done("sweep", file, "--out", f"{here}/out")
+        rows = results(f"{here}/out")["rows"]
+        assert [row["scene"] for row in rows] == ["orbit", "above"]
+        pictures = [(Path(here) / "out" / row["picture"]).read_bytes() for row in rows]
+        assert pictures[0] != pictures[1]
+        for row, picture in zip(rows, pictures):
+            words = [word.replace(".exr", ".png") for word in words_of(row["command"])]
+            done(*words[1:], folder=reader)
+            assert (Path(reader) / words[-1].split("=")[-1]).read_bytes() == picture, row["command"]
+        scenes[1]["camera"]["fov"] = 30
+        (study / "orbit.json").write_text((study / "orbit.json").read_text().replace("50", "51"))
+        lines = refused("sweep", tiny(study, scenes=scenes, variants=[TINY["variants"][1]]), "--out", f"{here}/out", "--resume")
+        assert any("'camera' of the scene 'above'" in line for line in lines), lines
+        assert any("'path' of the scene 'orbit'" in line for line in lines), lines
+
+
 def words_of(command):
     """As a shell splits it."""
     return subprocess.run(["bash", "-c", f"printf '%s\\n' {command}"], capture_output=True, text=True,

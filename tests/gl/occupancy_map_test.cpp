@@ -303,7 +303,7 @@ TEST_F(OccupancyMapGl, AlphaTestsMakeHoles) {
 TEST_F(OccupancyMapGl, RefusesWhatItCannotDo) {
     const Scene scene = sceneOf(randomTriangles(5, 9));
     EXPECT_THAT(messageOf<InputError>([&] { mapRenderer(scene, R"("resolution": 96)").frame(); }),
-                testing::HasSubstr("resolution must be 32, 64, 128 or 256, not 96"));
+                testing::HasSubstr("'resolution': must be 32, 64, 128 or 256, not 96"));
     World world;
     world.facts.triangles = 1;
     world.facts.sphere.radius = 1;

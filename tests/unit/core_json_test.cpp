@@ -51,5 +51,29 @@ TEST(NearName, FindsSlipsAndLeavesStrangersAlone) {
     EXPECT_EQ(nearName("visibility", names), "");
 }
 
+TEST(Json, NumbersBeyondDoubleAreTold) {
+    EXPECT_EQ(parseMessage("{\"a\": [1,\n 1e400]}"),
+              "f.json:2:2: the number 1e400 is too large: at most 1.798e+308 can be read");
+    EXPECT_EQ(parseMessage("-1e999"),
+              "f.json:1:1: the number -1e999 is too large: at most 1.798e+308 can be read");
+}
+
+TEST(Json, WholeNumbersAreWhole) {
+    const Json json = Json::parse("[128.0, 1e3, 1.5, 1e300, 7, -2.0]", "f.json");
+    const std::vector<bool> whole{true, true, false, false, true, true};
+    for (size_t i = 0; i < whole.size(); ++i) EXPECT_EQ(json.items[i].isWhole(), whole[i]) << i;
+    EXPECT_EQ(json.items[0].integer, 128);
+    EXPECT_EQ(json.items[1].integer, 1000);
+    EXPECT_EQ(json.items[5].integer, -2);
+    EXPECT_EQ(json.items[0].kind, Json::Kind::Float) << "and stay as they were written";
+    std::vector<Problem> problems;
+    const Json object = Json::parse("{\"a\": 128.0, \"b\": 1.5}", "f.json");
+    JsonFields fields(object, "it", problems);
+    ASSERT_NE(fields.required("a", Json::Kind::Int), nullptr);
+    EXPECT_EQ(fields.required("b", Json::Kind::Int), nullptr);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].text(), "f.json:1:19: 'b' of it must be a whole number, not a number");
+}
+
 } // namespace
 } // namespace kestrel

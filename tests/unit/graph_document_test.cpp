@@ -30,11 +30,42 @@ const std::string canonical = R"({
 TEST(GraphDocument, CanonicalTextSurvivesLoadAndSaveToTheByte) {
     const Graph graph = parseGraph(canonical, "g.json");
     EXPECT_EQ(graph.name, "Ambient occlusion by rays");
-    EXPECT_EQ(graph.sceneCamera, "stairs");
+    EXPECT_EQ(graph.sceneSetup.cameraName, "stairs");
     ASSERT_EQ(graph.passes.size(), 3u);
     EXPECT_EQ(std::get<double>(graph.passes[1].properties[2].second), 1.5);
     EXPECT_EQ(graph.edges[1].to.text(), "ao.tracer");
     EXPECT_EQ(saveGraph(graph), canonical);
+}
+
+TEST(GraphDocument, WhatTheSceneGainsIsReadCheckedAndSaved) {
+    const std::string block =
+        R"({ "source": "a.glb", "camera": { "eye": [0, 2, 0], "target": [1, 2, 0], "fov": 60 }, )"
+        R"("lights": [{ "kind": "directional", "direction": [0, -1, 0], "intensity": 3 }], )"
+        R"("animation": "walk", "time": 1.5, "fps": 30 })";
+    const std::string text = "{\n  \"kestrel\": 1,\n  \"scene\": " + block +
+                             ",\n  \"passes\": {},\n  \"edges\": [],\n  \"outputs\": []\n}\n";
+    const Graph graph = parseGraph(text, "g.json");
+    ASSERT_TRUE(graph.sceneSetup.camera);
+    EXPECT_EQ(graph.sceneSetup.camera->target, glm::dvec3(1, 2, 0));
+    EXPECT_EQ(graph.sceneSetup.lights.size(), 1u);
+    EXPECT_EQ(graph.sceneSetup.time, 1.5);
+    EXPECT_EQ(saveGraph(graph), text);
+    EXPECT_EQ(
+        messageOf([] {
+            parseGraph(R"({"kestrel": 1, "passes": {}, "scene": {
+"camera": {"eye": [0, 2], "tagret": [1, 2, 0]},
+"lights": [{"kind": "spot"}, {"kind": "pont"}],
+"camrea": 3, "fps": 0}})",
+                       "g.json");
+        }),
+        "g.json:2:19: 'eye' must be three numbers from -1000000000 to 1000000000\n"
+        "g.json:2:27: the camera has no key 'tagret' (did you mean 'target'?)\n"
+        "g.json:3:12: a spot light needs 'position'\n"
+        "g.json:3:12: a spot light needs 'direction'\n"
+        "g.json:3:39: the kind of a light must be one of point, spot, directional, rectangle, sphere, not "
+        "'pont' (did you mean 'point'?)\n"
+        "g.json:4:21: 'fps' must be more than 0 and less than 1000000, not 0\n"
+        "g.json:4:1: the scene has no key 'camrea' (did you mean 'camera'?)");
 }
 
 TEST(GraphDocument, AnyLayoutSavesToOneText) {
@@ -257,8 +288,8 @@ TEST(GraphSetting, RefusesWithASentence) {
     EXPECT_EQ(refused("blur.result=s.colour"),
               "'blur.result' is an output; only properties and inputs can be set");
     EXPECT_EQ(refused("s.scratch=1"), "'s.scratch' is internal; only properties and inputs can be set");
-    EXPECT_EQ(refused("blur.radius=1.0"),
-              "property 'radius' of pass 'blur' must be a whole number, not '1.0'");
+    EXPECT_EQ(refused("blur.radius=1.5"),
+              "property 'radius' of pass 'blur' must be a whole number, not '1.5'");
     EXPECT_EQ(refused("blur.radius=99"),
               "property 'radius' of pass 'blur' must be from 1 to 8 pixels, not 99");
     EXPECT_EQ(refused("blur.wide=1"), "property 'wide' of pass 'blur' must be true or false, not '1'");

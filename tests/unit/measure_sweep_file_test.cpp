@@ -255,5 +255,29 @@ TEST(ChoosePoints, TakesVariantSeriesOrPointAndKnowsNearNames) {
     }
 }
 
+TEST(SweepFile, ScenesAreSetUpWithEveryMistake) {
+    const Sweep sweep = parseSweep(R"({ "kestrel_sweep": 1, "size": [64.0, 36], "frames": 3.0, "scenes": [
+ { "source": "builtin:blob", "camera": "top", "lights": [{ "kind": "sphere", "position": [0, 1, 0], "radius": 1 }] },
+ { "source": "builtin:blob", "camera": { "name": "mine", "eye": [0, 2, 0], "target": [1, 2, 0] }, "time": 2 }],
+ "reference": { "graph": "r.json", "output": "truth.visibility" }, "variants": [)" +
+                                       plain + "] }",
+                                   "s.json");
+    EXPECT_EQ(sweep.size, (Extent{64, 36, 1}));
+    EXPECT_EQ(sweep.frames, 3);
+    EXPECT_EQ(sweep.scenes[0].name, "blob, top");
+    EXPECT_EQ(sweep.scenes[0].setup.lights.size(), 1u);
+    EXPECT_EQ(sweep.scenes[1].name, "blob, mine");
+    EXPECT_EQ(cameraOf(sweep.scenes[1]), "mine");
+    EXPECT_EQ(sweep.scenes[1].setup.time, 2);
+    const std::vector<std::string> mistakes = mistakesOf(
+        R"({ "kestrel_sweep": 1, "scenes": [{ "source": "builtin:blob", "camera": { "eye": 3 }, "tmie": 2,
+ "lights": [{ "kind": "sphere" }] }], "variants": [)" +
+        plain + "] }");
+    EXPECT_THAT(mistakes,
+                testing::Contains(HasSubstr("'eye' of the camera must be an array, not a whole number")));
+    EXPECT_THAT(mistakes, testing::Contains(HasSubstr("a scene has no key 'tmie' (did you mean 'time'?)")));
+    EXPECT_THAT(mistakes, testing::Contains(HasSubstr("s.json:2:13: a sphere light needs 'radius'")));
+}
+
 } // namespace
 } // namespace kestrel
