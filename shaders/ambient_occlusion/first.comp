@@ -1,14 +1,9 @@
 // The first pass: occlusion by the first surface alone, and which samples something behind it may change.
-#include "ambient_occlusion/disc.glsl"
+#include "ambient_occlusion/disc_images.glsl"
 #include "shared/work_list.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(r32f) uniform readonly image2D view_depth;
-layout(rgba16f) uniform readonly image2D normal;
-#ifdef DUAL
-layout(r32f) uniform readonly image2D second_depth;
-#endif
 layout(r16f) uniform writeonly image2D visibility;
 #ifdef MEAN
 layout(r16f) uniform writeonly image2D mean;
@@ -23,39 +18,21 @@ layout(std430) buffer Pixels {
     uint items[];
 } list;
 #endif
-layout(std140) uniform ViewDepthView { ViewData depthView; };
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(visibility)))) return;
-    ivec2 at = pixel + int(depthView.guard);
-    ivec2 size = ivec2(depthView.size);
-    float divisor = float(depthView.divisor);
-
-    float depth = imageLoad(view_depth, at).r;
     EyeGrid grid = eyeGrid(depthView);
-    vec3 eyeNormal = mat3(depthView.view) * imageLoad(normal, at).xyz;
-    DiscPoint point = discPoint(grid, vec2(at) + 0.5, depthOrFar(depth), eyeNormal, pixel, divisor);
+    float depth;
+    DiscPoint point = pointAt(grid, pixel, depth);
 
     float sum = 0.0;
     uint bits = 0u;
     for (int i = 0; i < SAMPLES; ++i) {
-        DiscSample s = discSample(grid, point, size, kernel.disc[i]);
-        vec3 position = eyePosition(grid, vec2(s.pixel) + 0.5, depthOrFar(imageLoad(view_depth, s.pixel).r));
-        float value = contribution(point, s, position);
-#if defined(MASK) || defined(DUAL)
-        float height = sampleHeight(point, position);
-        bool hidden = mayHide(point, s, height, divisor);
-#ifdef DUAL
-        vec3 second = eyePosition(grid, vec2(s.pixel) + 0.5, depthOrFar(imageLoad(second_depth, s.pixel).r));
-        if (hidden) {
-            value = min(value, contribution(point, s, second));
-            height = min(height, sampleHeight(point, second));
-            hidden = mayHide(point, s, height, divisor);
-        }
-#endif
-#endif
-        if (s.self) value = s.whole;
+        DiscSample s = discSample(grid, point, ivec2(depthView.size), kernel.disc[i]);
+        float height;
+        bool hidden;
+        float value = firstContribution(grid, point, s, height, hidden);
         if (s.counts) sum += value;
 #ifdef MASK
         bool beyond = !s.inside && all(greaterThanEqual(s.place, reach.xy)) && all(lessThan(s.place, reach.zw));

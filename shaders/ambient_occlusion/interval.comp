@@ -4,17 +4,12 @@
 // A height over the point is met by the ray through a sample at a distance that the two share: the disc is square to the
 // point's own ray. The texel's ray may pass up to a texel's diagonal beside the sample, which changes the distance by the
 // sample's offset times the angle between them.
-#include "ambient_occlusion/disc.glsl"
-#include "ambient_occlusion/map.glsl"
+#include "ambient_occlusion/disc_images.glsl"
+#include "stochastic_depth/map.glsl"
 #include "shared/work_list.h"
 
 layout(local_size_x = 64) in;
 
-layout(r32f) uniform readonly image2D view_depth;
-layout(rgba16f) uniform readonly image2D normal;
-#ifdef DUAL
-layout(r32f) uniform readonly image2D second_depth;
-#endif
 layout(MASK_FORMAT) uniform readonly uimage2D mask;
 layout(std430) readonly buffer Pixels {
     WorkListHeader header;
@@ -27,36 +22,29 @@ layout(r8ui) uniform writeonly uimage2D sd_mask;
 layout(r32ui) uniform uimage2D ray_min;
 layout(r32ui) uniform uimage2D ray_max;
 #endif
-layout(std140) uniform ViewDepthView { ViewData depthView; };
 layout(std140) uniform MAP_VIEW { ViewData mapView; };
 
 void main() {
     if (gl_GlobalInvocationID.x >= list.header.count) return;
     ivec2 pixel = unpackPixel(list.items[gl_GlobalInvocationID.x]);
-    ivec2 at = pixel + int(depthView.guard);
-    float divisor = float(depthView.divisor);
-    float depth = imageLoad(view_depth, at).r;
     EyeGrid grid = eyeGrid(depthView);
-    vec3 eyeNormal = mat3(depthView.view) * imageLoad(normal, at).xyz;
-    DiscPoint point = discPoint(grid, vec2(at) + 0.5, depthOrFar(depth), eyeNormal, pixel, divisor);
-    float texelAngle = 1.4142136 * float(mapView.divisor) * point.radius / (point.radiusPixels * divisor * point.away);
+    float depth;
+    DiscPoint point = pointAt(grid, pixel, depth);
+    float texelAngle = 1.4142136 * float(mapView.divisor) * point.radius / (point.radiusPixels * float(depthView.divisor) * point.away);
 
     uint bits = imageLoad(mask, pixel).r;
     while (bits != 0u) {
         int i = findLSB(bits);
         bits &= bits - 1u;
         DiscSample s = discSample(grid, point, ivec2(depthView.size), kernel.disc[i]);
-        ivec2 texel = mapTexel(mapView, depthView, s.place);
+        ivec2 texel = mapTexelAt(mapView, (s.place - float(depthView.guard)) * float(depthView.divisor));
 #ifdef SD_MASK
         imageStore(sd_mask, texel, uvec4(1u));
 #endif
 #ifdef INTERVAL
-        float first = depthOrFar(imageLoad(view_depth, s.pixel).r);
-        float height = sampleHeight(point, eyePosition(grid, vec2(s.pixel) + 0.5, first));
-#ifdef DUAL
-        float second = depthOrFar(imageLoad(second_depth, s.pixel).r);
-        height = min(height, sampleHeight(point, eyePosition(grid, vec2(s.pixel) + 0.5, second)));
-#endif
+        float height;
+        bool hidden;
+        firstContribution(grid, point, s, height, hidden);
         float top = s.inside ? min(height, reachOf(s)) : reachOf(s);
         float stretch = grid.parallel ? 1.0 : length(s.position) / point.away;
         float slack = grid.parallel ? 0.0 : length(kernel.disc[i].xy) * point.radius * texelAngle;

@@ -17,6 +17,7 @@ const uint randomGlossy = 16384u;    // two a ray
 const uint randomLightJitter = 20480u; // of the positions of lights, per light
 const uint randomGather = 20992u;    // of samples of a reflective shadow map
 const uint randomScreenTrace = 21504u; // where between its samples a march begins
+const uint randomStochasticDepth = 22016u; // which depths a texel keeps; the hit's number is hashed in
 
 // Integer hash with good avalanche (multiply, xor-shift; constants found by search, "lowbias32").
 inline uint hashUint(uint x) {

@@ -1,0 +1,128 @@
+#include "stochastic_depth_ray.h"
+#include "depth_map.h"
+#include "draw/material_defines.h"
+#include "execute/commands.h"
+#include "shared/work_list.h"
+#include <cstddef>
+
+namespace kestrel {
+
+PassType StochasticDepthRay::type() {
+    return Describe<StochasticDepthRay>("StochasticDepthRay",
+                                        "Depths behind the first surface by one ray a texel, a few of them "
+                                        "kept at random: a stochastic depth map where a mask asks for it")
+        .input("view_depth", PortKind::Texture, "Distance of the first surface along the view axis")
+        .carries(content::viewDepth)
+        .input("hits", PortKind::Hits, "Who enumerates what rays meet")
+        .input("sd_mask", PortKind::Texture, "1 where a texel is asked for; read without `interval`")
+        .carries({.channels = 1})
+        .input("ray_min", PortKind::Texture, "Where each texel's ray begins, as float bits")
+        .carries({.channels = 1})
+        .sameExtentAs("sd_mask")
+        .input("ray_max", PortKind::Texture, "And where it ends; 0 where no texel is asked for")
+        .carries({.channels = 1})
+        .sameExtentAs("sd_mask")
+        .output("layers", PortKind::Layers, "The depths kept, in no order but a k-buffer's")
+        .output("depths", PortKind::Texture,
+                "The same as images: view depth, four slots an image; 3e38 where a slot is empty")
+        .carries({.space = Space::View})
+        .internal("texels", PortKind::Buffer, "The texels to trace, as a list (shared/work_list.h)")
+        .number("layers_per_texel", &StochasticDepthRay::layers, 1, 16, "slots",
+                "Depths that a texel keeps at most (N)")
+        .choice("collection", &StochasticDepthRay::collection, {"reservoir", "coverage_mask", "k_buffer"},
+                "Which hits stay: a random sample; per slot the nearest of a random subset; the nearest")
+        .number("max_count", &StochasticDepthRay::maxCount, 0, 4096, "hits",
+                "From so many on each hit shortens the ray to itself (MAX_COUNT); 0: none does")
+        .flag("z_cull", &StochasticDepthRay::zCull, "A reservoir's hit replaces farther ones only")
+        .flag("interval", &StochasticDepthRay::interval,
+              "Looks only between the distances that the samples need")
+        .flag("jitter", &StochasticDepthRay::jitter,
+              "Takes the samples of 4 x 4 texels at different places within them");
+}
+
+Declaration StochasticDepthRay::declare(const World& world, const Inputs& inputs,
+                                        const Demand& demand) const {
+    Declaration declaration;
+    const char* const mask = interval ? "ray_max" : "sd_mask";
+    const Desc& map = inputs[mask].desc;
+    const Desc depths = depthMapDesc(layers, map.extent, map.view);
+    if (!std::holds_alternative<FrameView>(map.view.source))
+        declaration.problems.push_back({mask, "is not seen by the frame's camera"});
+
+    Output images{.port = "depths", .desc = depths};
+    const bool nothing = world.facts.triangles == 0 || inputs[mask].constant == glm::vec4(0);
+    if (nothing)
+        images.constant = glm::vec4(3.0e38f);
+    else
+        images.clear = glm::vec4(3.0e38f); // noLayer of lib/layers.glsl
+    declaration.outputs.push_back(std::move(images));
+    if (demand.reads("layers")) {
+        const DepthLayers told{
+            .count = layers, .linear = true, .ordered = collection == Collection::KBuffer || layers == 1};
+        declaration.outputs.push_back({.port = "layers", .desc = Desc::layersModule(told, map.view)});
+        declaration.modules.push_back(depthMapModule(depths, layers, jitter));
+    }
+    if (nothing) {
+        declaration.leftOut.push_back({"tracing", "no texel is asked for"});
+        return declaration;
+    }
+    if (!world.facts.hasMasked)
+        declaration.leftOut.push_back({"alpha test at hits", "no material is masked or blended"});
+
+    const std::uint64_t texels = std::uint64_t{map.extent.width} * map.extent.height;
+    declaration.outputs.push_back(
+        {.port = "texels", .desc = Desc::buffer(sizeof(shared::WorkListHeader) + 4 * texels)});
+    declaration.steps.push_back({.name = "clear_list",
+                                 .run = &StochasticDepthRay::clearList,
+                                 .uses = {{.port = "texels", .access = Access::Copy, .write = true}},
+                                 .group = "generation"});
+    Step list{.name = "list",
+              .run = &StochasticDepthRay::list,
+              .shaders = {"stochastic_depth/list.comp"},
+              .uses = {{.port = mask, .access = Access::Image},
+                       {.port = "texels", .access = Access::Storage, .write = true}},
+              .group = "generation"};
+    if (interval) list.defines.emplace("WANTED_INTERVAL", "1");
+    declaration.steps.push_back(std::move(list));
+
+    Step trace{.name = "trace",
+               .run = &StochasticDepthRay::trace,
+               .shaders = {"stochastic_depth/trace.comp"},
+               .defines = materialDefines(world.facts),
+               .uses = {{.port = "view_depth", .access = Access::Image},
+                        {.port = "texels", .access = Access::Storage},
+                        {.port = "texels", .access = Access::Indirect},
+                        {.port = "depths", .access = Access::Image, .write = true}},
+               .modules = {{"hits", requests::AllHits}},
+               .group = "tracing"};
+    constexpr const char* names[] = {"RESERVOIR", "COVERAGE_MASK", "K_BUFFER"};
+    trace.defines.emplace(names[static_cast<int>(collection)], "1");
+    trace.defines.emplace("LAYERS", std::to_string(layers));
+    trace.defines.emplace("MAX_COUNT", std::to_string(maxCount));
+    trace.defines.emplace("Z_CULL", zCull ? "true" : "false");
+    trace.defines.emplace("JITTER", jitter ? "true" : "false");
+    trace.defines.emplace("DEPTHS_FORMAT", std::string(formatInfo(depths.format).name));
+    if (interval) {
+        trace.defines.emplace("INTERVAL", "1");
+        trace.uses.push_back({.port = "ray_min", .access = Access::Image});
+        trace.uses.push_back({.port = "ray_max", .access = Access::Image});
+    }
+    declaration.steps.push_back(std::move(trace));
+    declaration.depends = Causes::Properties;
+    return declaration;
+}
+
+void StochasticDepthRay::clearList(Commands& commands) const {
+    commands.uploadValue("texels", shared::WorkListHeader{0, 0, 0, 0, {0, 1, 1, 0}});
+}
+
+void StochasticDepthRay::list(Commands& commands) const {
+    const Extent extent = commands.desc(interval ? "ray_max" : "sd_mask").extent;
+    commands.dispatchOver((extent.width + 7) / 8, extent.height);
+}
+
+void StochasticDepthRay::trace(Commands& commands) const {
+    commands.dispatchIndirect("texels", offsetof(shared::WorkListHeader, groups));
+}
+
+} // namespace kestrel
