@@ -11,12 +11,20 @@ namespace {
 void requireFits(const PlanResource& resource, const Capabilities& capabilities) {
     const Desc& desc = resource.desc;
     const auto refuse = [&](const char* what, std::uint64_t need, std::uint64_t limit) {
-        throw MachineError(fmt::format("{}: {} of {} is beyond the device's limit of {}",
-                                       resource.port.text(), what, need, limit));
+        throw MachineError(fmt::format("{}: {}, {}, is beyond the device's limit of {}", resource.port.text(),
+                                       what, need, limit));
     };
     if (desc.kind == ResourceKind::Buffer) {
-        const auto limit = static_cast<std::uint64_t>(capabilities.maxStorageBlockBytes);
-        if (desc.bytes > limit) refuse("a buffer of so many bytes", desc.bytes, limit);
+        // One with a texel format is read by texels; what binds it as a block is held against that limit
+        // where the use is declared.
+        const bool texels = desc.format != Format::None;
+        const auto limit = static_cast<std::uint64_t>(texels ? capabilities.maxTextureBufferTexels
+                                                             : capabilities.maxStorageBlockBytes);
+        const std::uint64_t size =
+            texels ? static_cast<std::uint64_t>(formatInfo(desc.format).bytes) : std::uint64_t{1};
+        if (desc.bytes / size > limit)
+            refuse(texels ? "a buffer's size in texels" : "a buffer's size in bytes", desc.bytes / size,
+                   limit);
         return;
     }
     const auto side = static_cast<std::uint64_t>(

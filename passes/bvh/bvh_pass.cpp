@@ -2,6 +2,7 @@
 #include "execute/commands.h"
 #include "scene/bvh.h"
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace kestrel {
 namespace {
@@ -35,9 +36,13 @@ Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& de
     const std::uint64_t triangles = world.facts.triangles;
     const std::uint64_t texels = triangleBytes(triangles) / texelBytes;
     const auto limit = static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
-    if (std::max(texels, nodeBytes(triangles) / texelBytes) > limit)
+    const std::uint64_t most = std::max(texels, nodeBytes(triangles) / texelBytes);
+    if (most > limit)
         declaration.problems.push_back(
-            {"", "the scene needs more texels in a buffer texture than this device has", true});
+            {"",
+             fmt::format("{} triangles need {} texels in a buffer texture; the limit is {}", triangles, most,
+                         limit),
+             true});
 
     declaration.outputs.push_back(
         {.port = "nodes", .desc = Desc::buffer(nodeBytes(triangles), Format::RGBA32UI)});
