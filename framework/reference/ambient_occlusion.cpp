@@ -75,8 +75,10 @@ private:
         const glm::vec3 face =
             inputs_.faceNormal.empty() ? normal : glm::normalize(vectorAt(inputs_.faceNormal, x, y));
         const glm::vec3 size = glm::abs(position);
-        const float scale = std::max({size.x, size.y, size.z, radius_});
-        const glm::vec3 origin = position + face * (settings_.relativeOffset * scale);
+        const float off = inputs_.faceNormal.channels > 3
+                              ? inputs_.faceNormal.at(x, y, 3)
+                              : settings_.relativeOffset * std::max({size.x, size.y, size.z, radius_});
+        const glm::vec3 origin = position + off * face;
         const glm::mat3 basis = basisAround(normal);
         const auto dimension = shared::randomReference + static_cast<std::uint32_t>(half);
         const std::uint32_t seed = shared::pixelSeed(glm::uvec2(x, y), dimension, settings_.seed);

@@ -12,7 +12,8 @@ namespace kestrel {
 struct OcclusionInputs {
     Image position;   // 3 or 4 channels: render space
     Image normal;     // 3 or 4: the axis of the hemisphere, unit; zero where there is no geometry
-    Image faceNormal; // 3 or 4: the surface itself, unit, on the same side; empty: the same as `normal`
+    Image faceNormal; // 3: the surface itself, unit, on the same side; 4: and how far along it rays start
+                      // (rayStart() of shared/ray.h). Empty: the same as `normal`
 };
 
 struct OcclusionSettings {
@@ -20,9 +21,9 @@ struct OcclusionSettings {
     float maximumDistance = std::numeric_limits<float>::infinity(); // occluders farther away do not count
     std::uint32_t seed = 0;
     int threads = 2; // the result does not depend on it
-    // How far a ray starts off the surface along the face normal, relative to the largest of the position's
-    // components and the radius of the geometry's bounds: above the rounding of a position that went through
-    // a depth buffer.
+    // How far a ray starts off the surface along the face normal where the input does not tell it, relative
+    // to the largest of the position's components and the radius of the geometry's bounds: above the rounding
+    // of a position that went through a depth buffer.
     float relativeOffset = 0x1p-15f;
     Progress progress;
 };

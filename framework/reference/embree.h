@@ -11,20 +11,13 @@ namespace kestrel::embree {
 #if KESTREL_HAS_EMBREE >= 4
 
 using Context = RTCRayQueryContext;
-inline constexpr RTCSceneFlags filterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 
 inline void initContext(Context& context) { rtcInitRayQueryContext(&context); }
 
-// `filter` is called for every hit in addition to the geometry's own; nullptr: none.
-inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray,
-                       RTCFilterFunctionN filter = nullptr) {
+inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray) {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
     arguments.context = &context;
-    arguments.filter = filter;
-    if (filter)
-        arguments.flags =
-            static_cast<RTCRayQueryFlags>(arguments.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
     rtcIntersect1(scene, &ray, &arguments);
 }
 
@@ -54,14 +47,10 @@ inline void occluded16(RTCScene scene, Context& context, const int* valid, RTCRa
 #else
 
 using Context = RTCIntersectContext;
-inline constexpr RTCSceneFlags filterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 
 inline void initContext(Context& context) { rtcInitIntersectContext(&context); }
 
-// `filter` is called for every hit in addition to the geometry's own; nullptr: none.
-inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray,
-                       RTCFilterFunctionN filter = nullptr) {
-    context.filter = filter;
+inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray) {
     rtcIntersect1(scene, &context, &ray);
 }
 

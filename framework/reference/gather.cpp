@@ -111,7 +111,9 @@ public:
             const SurfaceSample met = surfaces_.at(scratch.hits[i], scratch.rays[i].direction);
             if (settings_.emission) light += scratch.shares[i] * met.emission;
             const glm::vec3 share = scratch.shares[i] * met.albedo * (1 - met.metallic);
-            const glm::vec3 origin = offSurface(met.position, met.faceNormal);
+            // As from an eye where the ray came from.
+            const float start = shared::rayStart(scratch.hits[i].t, largestOf(met.position), met.reach);
+            const glm::vec3 origin = met.position + start * met.faceNormal;
             const LitPoint lit{met.position, origin, met.normal, met.faceNormal};
             lights_.addPunctual(scratch.shadows, lit, share);
             lights_.addArea(scratch.shadows, lit, share,
@@ -134,16 +136,19 @@ public:
     [[nodiscard]] int samples() const { return half_; }
 
 private:
-    [[nodiscard]] glm::vec3 offSurface(const glm::vec3& position, const glm::vec3& normal) const {
+    static float largestOf(const glm::vec3& position) {
         const glm::vec3 size = glm::abs(position);
-        return position + normal * (settings_.relativeOffset * std::max({size.x, size.y, size.z, radius_}));
+        return std::max({size.x, size.y, size.z});
     }
 
     [[nodiscard]] GatherPoint pointAt(int x, int y, size_t half) const {
         const glm::vec3 normal = glm::normalize(rgbAt(inputs_.normal, x, y));
         GatherPoint point{x, y, rgbAt(inputs_.position, x, y), normal, normal, {}, 0};
         if (!inputs_.faceNormal.empty()) point.face = glm::normalize(rgbAt(inputs_.faceNormal, x, y));
-        point.origin = offSurface(point.position, point.face);
+        const float off = inputs_.faceNormal.channels > 3
+                              ? inputs_.faceNormal.at(x, y, 3)
+                              : settings_.relativeOffset * std::max(largestOf(point.position), radius_);
+        point.origin = point.position + off * point.face;
         // Apart from those of ambient occlusion.
         const auto dimension = shared::randomReference + 16 + static_cast<std::uint32_t>(half);
         point.seed = shared::pixelSeed(glm::uvec2(x, y), dimension, settings_.seed);

@@ -15,7 +15,8 @@ namespace kestrel {
 struct GatherInputs {
     Image position;   // 3 or 4 channels: render space
     Image normal;     // 3 or 4: unit; zero where there is no geometry
-    Image faceNormal; // 3 or 4: the surface itself, unit, on the same side; empty: the same as `normal`
+    Image faceNormal; // 3: the surface itself, unit, on the same side; 4: and how far along it rays start
+                      // (rayStart() of shared/ray.h). Empty: the same as `normal`
     Image albedo;     // 3 or 4, for glossy reflection: linear base colour
     Image material;   // 2 to 4, for glossy reflection: roughness, metallic, unlit if above 0.5
 };
@@ -27,9 +28,9 @@ struct GatherSettings {
     float maximumDistance = std::numeric_limits<float>::infinity(); // surfaces farther away are not met
     bool emission = false;    // emissive surfaces send out their emission too
     glm::vec3 environment{0}; // radiance that arrives where nothing is met
-    // How far a ray starts off the surface along the face normal, relative to the largest of the position's
-    // components and the radius of the geometry's bounds: above the rounding of a position that went through
-    // a depth buffer.
+    // How far a ray starts off the surface along the face normal where the input does not tell it, relative
+    // to the largest of the position's components and the radius of the geometry's bounds: above the rounding
+    // of a position that went through a depth buffer.
     float relativeOffset = 0x1p-15f;
     Progress progress;
 };

@@ -1,5 +1,6 @@
 #include "reference/surface_sample.h"
 #include "reference/texture_sample.h"
+#include "shared/ray.h"
 
 namespace kestrel {
 namespace {
@@ -51,6 +52,20 @@ glm::vec3 SurfaceSampler::emission(std::uint32_t triangle, float u, float v) con
     return material.emission * glm::vec3(texture(material.emissionTexture, triangle, u, v, true));
 }
 
+glm::vec3 SurfaceSampler::bent(const Material& material, const TraceHit& hit, const glm::vec3& normal,
+                               const glm::vec4& tangent) const {
+    const TextureRef& map = material.normalTexture;
+    // A tangent along the normal spans no frame; interpolation may also leave none.
+    glm::vec3 t = glm::vec3(tangent) - normal * glm::dot(normal, glm::vec3(tangent));
+    if (!map.present() || tangent.w == 0 || !(glm::dot(t, t) > 0)) return normal;
+    t = glm::normalize(t);
+    const glm::vec3 b = glm::cross(normal, t) * (tangent.w < 0 ? -1.0f : 1.0f);
+    glm::vec3 bump = glm::vec3(texture(map, hit.triangle, hit.u, hit.v, false)) * 2.0f - 1.0f;
+    bump *= glm::vec3(material.normalScale, material.normalScale, 1);
+    const glm::vec3 sum = t * bump.x + b * bump.y + normal * bump.z;
+    return glm::dot(sum, sum) > 0 ? glm::normalize(sum) : normal;
+}
+
 SurfaceSample SurfaceSampler::at(const TraceHit& hit, const glm::vec3& direction) const {
     const std::uint32_t* corner = &geometry_.indices[3 * static_cast<size_t>(hit.triangle)];
     const glm::vec3 a = geometry_.positions[corner[0]];
@@ -65,14 +80,18 @@ SurfaceSample SurfaceSampler::at(const TraceHit& hit, const glm::vec3& direction
     sample.position = a + hit.u * (b - a) + hit.v * (c - a);
     const glm::vec3 face = unitFaceNormal(a, b, c);
     sample.faceNormal = face == glm::vec3(0) ? -glm::normalize(direction) : face;
+    sample.reach = shared::faceReach(sample.faceNormal, sample.position, a, b, c);
     // Normals that cancel out leave the face's.
     const glm::vec3 normal = interpolated(&VertexAttributes::normal);
     sample.normal = glm::dot(normal, normal) > 0 ? glm::normalize(normal) : sample.faceNormal;
+    const Material& material = materials_[geometry_.materials[hit.triangle]];
+    glm::vec4 tangent = interpolated(&VertexAttributes::tangent);
+    tangent.w = geometry_.attributes[corner[0]].tangent.w; // the same at all three, or meaningless in between
+    sample.normal = bent(material, hit, sample.normal, tangent);
     if (glm::dot(sample.faceNormal, direction) > 0) {
         sample.faceNormal = -sample.faceNormal;
         sample.normal = -sample.normal;
     }
-    const Material& material = materials_[geometry_.materials[hit.triangle]];
     const auto look = [&](const TextureRef& ref, bool colour) {
         return texture(ref, hit.triangle, hit.u, hit.v, colour);
     };

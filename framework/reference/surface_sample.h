@@ -10,13 +10,15 @@ namespace kestrel {
 
 // What a ray meets. Normals are unit and on the side that the ray came from.
 struct SurfaceSample {
-    glm::vec3 position{0}, faceNormal{0}, normal{0}; // the last interpolated, without normal maps
+    glm::vec3 position{0}, faceNormal{0}, normal{0}; // the last interpolated, bent by the normal map
     glm::vec3 albedo{1};                             // linear base colour: factor, texture, vertex colour
     glm::vec3 emission{0};                           // linear radiance: factor, texture
     float metallic = 0, roughness = 1;               // factors times texture
+    float reach = 0;                                 // faceReach() of shared/ray.h
 };
 
-// Textures are read at their finest level, with the filter of their sampler; colours are decoded before.
+// What shaders/lib/material.glsl tells of a hit. Textures are read at their finest level, with the filter of
+// their sampler; colours are decoded before.
 class SurfaceSampler {
 public:
     // Both must outlive it and stay as they are.
@@ -29,6 +31,9 @@ public:
     [[nodiscard]] glm::vec3 emission(std::uint32_t triangle, float u, float v) const;
 
 private:
+    // Unit: `normal` (unit) and `tangent` (interpolated, any length), bent by the normal map if there is one.
+    [[nodiscard]] glm::vec3 bent(const Material& material, const TraceHit& hit, const glm::vec3& normal,
+                                 const glm::vec4& tangent) const;
     [[nodiscard]] glm::vec4 texture(const TextureRef& ref, std::uint32_t triangle, float u, float v,
                                     bool colour) const;
     const Geometry& geometry_;

@@ -3,11 +3,15 @@
 #include "core/error.h"
 #ifdef KESTREL_HAS_EMBREE
 #include "reference/alpha_test.h"
+#include "reference/coincident.h"
 #include "reference/embree.h"
+#include "shared/triangle.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
+#include <limits>
+#include <mutex>
 #include <utility>
 #endif
 
@@ -44,10 +48,11 @@ void throwIfFailed(RTCDevice device, const char* what) {
         throw MachineError(fmt::format("Embree fails while {} (error {})", what, static_cast<int>(error)));
 }
 
-// Embree's context, followed by what the filter of a query for all hits needs.
+// Embree's context, followed by what a query for all hits needs.
 struct AllHitsContext {
     embree::Context base;
-    const std::uint32_t* firstTriangle; // of each geometry
+    shared::TriangleRay ray;
+    float tMin, tMax;
     const std::function<bool(const TraceHit&)>* visit;
     bool stopped;
 };
@@ -96,11 +101,14 @@ void fillPacket(RTCRay16& to, int* valid, std::span<const TraceRay> rays, size_t
 struct ReferenceTracer::State {
     State(const Geometry& geometry, const Scene& scene)
         : alpha(geometry, scene)
+        , coincident(geometry)
+        , positions(geometry.positions)
+        , indices(geometry.indices)
         , bounds(geometry.bounds)
         , device(rtcNewDevice(nullptr))
         , handle(device.get() ? rtcNewScene(device.get()) : nullptr) {
         if (!handle.get()) throw MachineError("Embree gives no device");
-        rtcSetSceneFlags(handle.get(), RTC_SCENE_FLAG_ROBUST | embree::filterFlag);
+        rtcSetSceneFlags(handle.get(), RTC_SCENE_FLAG_ROBUST);
         if (geometry.triangleCount() > 0) attach(geometry);
         rtcCommitScene(handle.get());
         throwIfFailed(device.get(), "building");
@@ -154,14 +162,94 @@ struct ReferenceTracer::State {
 
     [[nodiscard]] TraceHit hitOf(unsigned geometry, unsigned primitive, float t, float u, float v) const {
         if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
-        return {t, u, v, firstTriangle[geometry] + primitive};
+        return lowest({t, u, v, firstTriangle[geometry] + primitive});
+    }
+
+    // The same point of the lowest triangle there that is solid.
+    [[nodiscard]] TraceHit lowest(const TraceHit& hit) const {
+        if (coincident.none()) return hit;
+        for (const std::uint32_t triangle : coincident.with(hit.triangle)) {
+            if (triangle == hit.triangle) break;
+            TraceHit other{hit.t, 0, 0, triangle};
+            const float weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                if (corner(triangle, 1) == corner(hit.triangle, k)) other.u = weights[k];
+                if (corner(triangle, 2) == corner(hit.triangle, k)) other.v = weights[k];
+            }
+            if (alpha.isSolid(triangle, other.u, other.v)) return other;
+        }
+        return hit;
+    }
+
+    [[nodiscard]] const glm::vec3& corner(std::uint32_t triangle, std::uint32_t k) const {
+        return positions[indices[3 * static_cast<size_t>(triangle) + k]];
+    }
+
+    // For queries for all hits: boxes of Embree's, each triangle tested by shared::intersectTriangle(), since
+    // Embree hands both triangles of an edge to a filter, and which ones of a vertex is a matter of rounding.
+    // Made when it is first asked for.
+    RTCScene exact() const {
+        std::call_once(exactOnce, [this] {
+            exactHandle = std::make_unique<SceneHandle>(rtcNewScene(device.get()));
+            if (!exactHandle->get()) throw MachineError("Embree gives no scene");
+            rtcSetSceneFlags(exactHandle->get(), RTC_SCENE_FLAG_ROBUST);
+            const GeometryHandle all(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER));
+            rtcSetGeometryUserPrimitiveCount(all.get(), static_cast<unsigned>(indices.size() / 3));
+            rtcSetGeometryUserData(all.get(), const_cast<State*>(this));
+            rtcSetGeometryBoundsFunction(all.get(), boundsOf, nullptr);
+            rtcSetGeometryIntersectFunction(all.get(), meet);
+            rtcCommitGeometry(all.get());
+            rtcAttachGeometry(exactHandle->get(), all.get());
+            rtcCommitScene(exactHandle->get());
+            throwIfFailed(device.get(), "building");
+        });
+        return exactHandle->get();
+    }
+
+    // Wider by more than rounding can move a triangle's edge for a ray from anywhere near the scene; what is
+    // hit is for the triangle's test to say.
+    static void boundsOf(const RTCBoundsFunctionArguments* arguments) {
+        const auto* self = static_cast<const State*>(arguments->geometryUserPtr);
+        Box box;
+        for (std::uint32_t k = 0; k < 3; ++k) box.add(self->corner(arguments->primID, k));
+        const glm::vec3 far = glm::max(glm::abs(self->bounds.min), glm::abs(self->bounds.max));
+        const float room = 2e-6f * (std::max({far.x, far.y, far.z}) + glm::length(self->bounds.size()));
+        RTCBounds& out = *arguments->bounds_o;
+        out.lower_x = box.min.x - room;
+        out.lower_y = box.min.y - room;
+        out.lower_z = box.min.z - room;
+        out.upper_x = box.max.x + room;
+        out.upper_y = box.max.y + room;
+        out.upper_z = box.max.z + room;
+    }
+
+    static void meet(const RTCIntersectFunctionNArguments* arguments) {
+        const auto* self = static_cast<const State*>(arguments->geometryUserPtr);
+        auto* all = reinterpret_cast<AllHitsContext*>(arguments->context);
+        const std::uint32_t triangle = arguments->primID;
+        shared::TriangleHit hit{};
+        if (arguments->valid[0] == 0 || all->stopped ||
+            !shared::intersectTriangle(all->ray, all->tMin, all->tMax, self->corner(triangle, 0),
+                                       self->corner(triangle, 1), self->corner(triangle, 2), hit) ||
+            !self->alpha.isSolid(triangle, hit.u, hit.v))
+            return;
+        all->stopped = (*all->visit)({hit.t, hit.u, hit.v, triangle});
+        // Nothing is nearer: Embree ends.
+        if (all->stopped)
+            RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0) =
+                -std::numeric_limits<float>::infinity();
     }
 
     AlphaTest alpha;
+    CoincidentTriangles coincident;
+    std::vector<glm::vec3> positions;
+    std::vector<std::uint32_t> indices;
+    mutable std::once_flag exactOnce;
     Box bounds;
     std::uint32_t firstTriangle[2] = {0, 0}; // of each Embree geometry
     Device device;
     SceneHandle handle;
+    mutable std::unique_ptr<SceneHandle> exactHandle;
 };
 
 ReferenceTracer::ReferenceTracer(const Geometry& geometry, const Scene& scene)
@@ -193,25 +281,12 @@ void ReferenceTracer::allHits(const TraceRay& ray, const std::function<bool(cons
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     AllHitsContext context;
     embree::initContext(context.base);
-    context.firstTriangle = state_->firstTriangle;
+    context.ray = shared::triangleRay(ray.origin, ray.direction);
+    context.tMin = ray.tMin;
+    context.tMax = ray.tMax;
     context.visit = &visit;
     context.stopped = false;
-    // Every hit is reported and refused, so that Embree goes on to the next; after a stop it is accepted,
-    // which shortens the ray.
-    const auto report = [](const RTCFilterFunctionNArguments* arguments) {
-        auto* all = reinterpret_cast<AllHitsContext*>(arguments->context);
-        for (unsigned i = 0; i < arguments->N; ++i) {
-            if (arguments->valid[i] == 0 || all->stopped) continue;
-            const unsigned id = RTCHitN_geomID(arguments->hit, arguments->N, i);
-            const TraceHit hit{RTCRayN_tfar(arguments->ray, arguments->N, i),
-                               RTCHitN_u(arguments->hit, arguments->N, i),
-                               RTCHitN_v(arguments->hit, arguments->N, i),
-                               all->firstTriangle[id] + RTCHitN_primID(arguments->hit, arguments->N, i)};
-            all->stopped = (*all->visit)(hit);
-            if (!all->stopped) arguments->valid[i] = 0;
-        }
-    };
-    embree::intersect1(state_->handle.get(), context.base, query, report);
+    embree::intersect1(state_->exact(), context.base, query);
 }
 
 void ReferenceTracer::closestHits(std::span<const TraceRay> rays, std::span<TraceHit> hits,

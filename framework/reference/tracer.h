@@ -13,7 +13,8 @@ namespace kestrel {
 // Rays that batches are traced in packets of.
 inline constexpr int tracePacket = 16;
 
-// Traces the geometry that it was built from (in Embree's robust mode, both sides of every triangle). Points
+// Traces the geometry that it was built from (in Embree's robust mode, both sides of every triangle). Of
+// triangles with the same corners the lowest is met, whatever the processor. Points
 // of masked and blended materials whose base colour alpha is below the cutoff let rays pass. All queries may
 // be called from several threads at once.
 class ReferenceTracer {
@@ -26,7 +27,9 @@ public:
 
     [[nodiscard]] std::optional<TraceHit> closestHit(const TraceRay& ray) const;
     [[nodiscard]] bool anyHit(const TraceRay& ray) const;
-    // Hands every hit to `visit`, in no particular order, until that returns true.
+    // Hands every hit to `visit`, in no particular order, until that returns true. A surface is met once: an
+    // edge or vertex that triangles share belongs to one of them (shaders/shared/triangle.h). Builds boxes of
+    // its own when it is first called.
     void allHits(const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit) const;
 
     // Whole batches in packets of tracePacket. `hits` is as long as `rays`; TraceHit::none where nothing was

@@ -47,10 +47,10 @@ void traverse(const Bvh& bvh, const TraceRay& ray, const float& tMax, Leaf&& lea
     }
 }
 
-std::optional<TraceHit> intersect(const TraceRay& ray, float tMax, const BvhTriangle& triangle) {
+std::optional<TraceHit> intersect(const shared::TriangleRay& ray, float tMin, float tMax,
+                                  const BvhTriangle& triangle) {
     shared::TriangleHit hit{};
-    if (!shared::intersectTriangle(ray.origin, ray.direction, ray.tMin, tMax, triangle.p0, triangle.p1,
-                                   triangle.p2, hit))
+    if (!shared::intersectTriangle(ray, tMin, tMax, triangle.p0, triangle.p1, triangle.p2, hit))
         return std::nullopt;
     return TraceHit{hit.t, hit.u, hit.v, triangle.triangle};
 }
@@ -58,10 +58,11 @@ std::optional<TraceHit> intersect(const TraceRay& ray, float tMax, const BvhTria
 } // namespace
 
 std::optional<TraceHit> closestHit(const Bvh& bvh, const TraceRay& ray) {
+    const shared::TriangleRay sheared = shared::triangleRay(ray.origin, ray.direction);
     std::optional<TraceHit> best;
     float tMax = ray.tMax;
     traverse(bvh, ray, tMax, [&](const BvhTriangle& triangle) {
-        const auto hit = intersect(ray, tMax, triangle);
+        const auto hit = intersect(sheared, ray.tMin, tMax, triangle);
         if (hit && (!best || hit->t < best->t || hit->triangle < best->triangle)) {
             best = hit;
             tMax = hit->t;
@@ -72,17 +73,19 @@ std::optional<TraceHit> closestHit(const Bvh& bvh, const TraceRay& ray) {
 }
 
 bool anyHit(const Bvh& bvh, const TraceRay& ray) {
+    const shared::TriangleRay sheared = shared::triangleRay(ray.origin, ray.direction);
     bool found = false;
     traverse(bvh, ray, ray.tMax, [&](const BvhTriangle& triangle) {
-        found = intersect(ray, ray.tMax, triangle).has_value();
+        found = intersect(sheared, ray.tMin, ray.tMax, triangle).has_value();
         return found;
     });
     return found;
 }
 
 void allHits(const Bvh& bvh, const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit) {
+    const shared::TriangleRay sheared = shared::triangleRay(ray.origin, ray.direction);
     traverse(bvh, ray, ray.tMax, [&](const BvhTriangle& triangle) {
-        const auto hit = intersect(ray, ray.tMax, triangle);
+        const auto hit = intersect(sheared, ray.tMin, ray.tMax, triangle);
         return hit && visit(*hit);
     });
 }

@@ -18,15 +18,20 @@ const Target targets[] = {
     {"view_depth", "OUT_VIEW_DEPTH", Format::R32F, content::viewDepth,
      "Distance along the view axis in scene units; 0 where nothing is"},
     {"normal", "OUT_NORMAL", Format::RGBA16F, content::normal,
-     "Shading normal, unit, towards the eye, render space; 0 where nothing is"},
+     "Shading normal, unit, towards the eye, render space; w: how far off its face the point lies that the "
+     "depth "
+     "gives, scene units. 0 where nothing is"},
     // Rays are held above the face: half floats are off by what a grazing ray needs to meet its own triangle.
     {"face_normal", "OUT_FACE_NORMAL", Format::RGBA32F, content::normal,
-     "Normal of the triangle, unit, towards the eye, render space; 0 where nothing is"},
+     "Normal of the triangle, unit, towards the eye, render space; w: how far along it a ray has to start, "
+     "scene "
+     "units (shared/ray.h). 0 where nothing is"},
     {"position", "OUT_POSITION", Format::RGBA32F, content::position,
      "Render-space position; w is 1 where there is geometry"},
     {"albedo", "OUT_ALBEDO", Format::RGBA16F, content::colour,
      "Linear base colour; a is 1 where there is geometry"},
-    {"material", "OUT_MATERIAL", Format::RGBA8, content::material,
+    // 8 bits of roughness would put 7.5 % on the peak of a highlight at 0.1.
+    {"material", "OUT_MATERIAL", Format::RGBA16F, content::material,
      "Roughness, metallic, and in z whether the surface is unlit"},
     {"emission", "OUT_EMISSION", Format::RGBA16F, content::colour, "Linear emitted radiance"},
     {"motion", "OUT_MOTION", Format::RG32F, content::motion,

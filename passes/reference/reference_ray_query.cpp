@@ -10,13 +10,11 @@ namespace {
 // Rays a thread takes at once: whole packets, few enough that both threads end together.
 constexpr size_t raysPerBatch = 256 * tracePacket;
 
-// As in Bvh: how far a ray starts off its surface, relative to the larger of the scene and its distance.
-constexpr float relativeRayOffset = 0x1p-15f;
-
-TraceRay traceRay(const shared::RayRecord& record, float radius) {
+// As in Bvh.
+TraceRay traceRay(const shared::RayRecord& record) {
     const glm::vec3 origin = record.origin;
-    const float scale = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z), radius});
-    return {.origin = origin + record.normal * (relativeRayOffset * scale),
+    const float largest = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
+    return {.origin = origin + record.normal * shared::rayStart(0, largest, 0),
             .direction = record.direction,
             .tMin = record.tMin,
             .tMax = record.tMax};
@@ -71,7 +69,7 @@ void ReferenceRayQuery::take(Commands& commands) {
         hits_[i].weight = 1;
         hits_[i].direction = records[i].direction;
         if ((records[i].flags & 1u) == 0) continue;
-        rays_.push_back(traceRay(records[i], commands.facts().sphere.radius));
+        rays_.push_back(traceRay(records[i]));
         records_.push_back(static_cast<std::uint32_t>(i));
     }
     any_.assign(rays_.size(), 0);

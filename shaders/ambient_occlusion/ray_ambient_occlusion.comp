@@ -33,8 +33,8 @@ void main() {
     vec3 n = imageLoad(normal, pixel).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
-    vec3 face = faceAt(pixel, n);
     vec3 origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
+    vec4 face = faceAt(pixel, n, depthView, origin, imageLoad(normal, pixel).w);
     uint seed = pixelSeed(uvec2(pixel), randomRayDirection, frame.seed);
 
     float open = 0.0, sum = 0.0;

@@ -4,18 +4,16 @@
 #include "lib/scene.glsl"
 #include "lib/iterations.glsl"
 #include "shared/bvh.h"
+#include "shared/ray.h"
 #include "shared/triangle.h"
 
 layout(rgba32ui) uniform readonly uimageBuffer M(nodes);
 layout(rgba32ui) uniform readonly uimageBuffer M(triangles);
 
-// How far a ray starts off its surface, relative to the larger of the scene and the distance to the middle of it: above
-// the error of a position that was rebuilt from a depth buffer, far below what can be seen.
-const float M(offset) = 3.0517578125e-5; // 2^-15
-
+// The consumer moved the origin off by what it does not know exactly (lib/face.glsl); here by the rounding of that.
 vec3 M(startOf)(Ray ray) {
-    float scale = max(max(abs(ray.origin.x), abs(ray.origin.y)), max(abs(ray.origin.z), frame.sceneBounds.w));
-    return ray.origin + ray.normal * (M(offset) * scale);
+    vec3 extent = abs(ray.origin);
+    return ray.origin + ray.normal * rayStart(0.0, max(extent.x, max(extent.y, extent.z)), 0.0);
 }
 
 void M(aim)(inout Ray ray) {}
@@ -56,6 +54,7 @@ void M(children)(uint node, vec3 origin, vec3 inverse, float tMin, float tMax, o
 bool M(traverse)(Ray ray, bool stopAtFirst, out float t, out vec2 barycentrics, out uint triangle) {
     vec3 origin = M(startOf)(ray);
     vec3 inverse = inverseDirection(ray.direction);
+    TriangleRay sheared = triangleRay(origin, ray.direction);
     uint references[bvhStackSize];
     float entries[bvhStackSize];
     int size = 0;
@@ -86,7 +85,7 @@ bool M(traverse)(Ray ray, bool stopAtFirst, out float t, out vec2 barycentrics, 
             uvec3 ids;
             M(triangleAt)(at, p0, p1, p2, ids);
             TriangleHit hit;
-            bool met = intersectTriangle(origin, ray.direction, ray.tMin, tMax, p0, p1, p2, hit);
+            bool met = intersectTriangle(sheared, ray.tMin, tMax, p0, p1, p2, hit);
 #ifdef MATERIAL_MASKED
             if (met && ids.z >= 2u) met = sceneCovers(ids.x, vec2(hit.u, hit.v));
 #endif
@@ -141,6 +140,7 @@ Surface M(surface)(Ray ray, Hit hit) { return sceneSurface(hit.id.x, unpackUnorm
 void M(all)(Ray ray) {
     vec3 origin = M(startOf)(ray);
     vec3 inverse = inverseDirection(ray.direction);
+    TriangleRay sheared = triangleRay(origin, ray.direction);
     uint references[bvhStackSize];
     int size = 0;
     uint reference = 0u;
@@ -162,7 +162,7 @@ void M(all)(Ray ray) {
             uvec3 ids;
             M(triangleAt)(at, p0, p1, p2, ids);
             TriangleHit hit;
-            bool met = intersectTriangle(origin, ray.direction, ray.tMin, ray.tMax, p0, p1, p2, hit);
+            bool met = intersectTriangle(sheared, ray.tMin, ray.tMax, p0, p1, p2, hit);
 #ifdef MATERIAL_MASKED
             if (met && ids.z >= 2u) met = sceneCovers(ids.x, vec2(hit.u, hit.v));
 #endif

@@ -1,6 +1,7 @@
 // Each OUT_… define switches one output on; what nobody reads is not computed.
 #include "lib/fragment.glsl"
 #include "lib/view.glsl"
+#include "shared/ray.h"
 #ifdef OUT_MOTION
 #include "lib/last_view.glsl"
 #endif
@@ -76,10 +77,16 @@ void main() {
     vec3 smoothNormal = dot(v_normal, v_normal) > 0.0 ? v_normal : face;
     vec3 shading = side * materialNormal(material, coords, smoothNormal, tangent);
     // A coarse mesh's smooth normal can look away from the eye at a silhouette; the face never does.
-    out_normal = vec4(dot(shading, eye) > 0.0 ? shading : side * face, 0.0);
+    // What the depth misplaces the point by: of a triangle that reaches far beyond the image, a rasterizer's depth is off by
+    // much more than its last bit.
+    vec3 misplaced = positionFromDepth(depthView, gl_FragCoord.xy, gl_FragCoord.z) - v_position;
+    out_normal = vec4(dot(shading, eye) > 0.0 ? shading : side * face, min(abs(dot(face, misplaced)), 65504.0));
 #endif
 #ifdef OUT_FACE_NORMAL
-    out_face_normal = vec4(side * face, 0.0);
+    vec3 extent = abs(v_position);
+    float reach = faceReach(face, v_position, scenePosition(corners.x), scenePosition(corners.y), scenePosition(corners.z));
+    float off = rayStart(distance(depthView.position.xyz, v_position), max(extent.x, max(extent.y, extent.z)), reach);
+    out_face_normal = vec4(side * face, off);
 #endif
 #ifdef OUT_VIEW_DEPTH
     out_view_depth = -(depthView.view * vec4(v_position, 1.0)).z;

@@ -12,7 +12,7 @@
 #define rayInfinity uintBitsToFloat(0x7f800000u)
 
 struct Ray {
-    vec3 origin;    // on a surface: the surface point itself; each tracer moves it off by its own measure
+    vec3 origin;    // on a surface: off the face by as far as its place is uncertain; each tracer adds its own measure
     // Unit, on the side the ray leaves to; zero if there is no surface. For aim the axis of the cosine that the direction was
     // drawn with; for the queries the normal of the face, along which tracers move the origin (lib/face.glsl).
     vec3 normal;

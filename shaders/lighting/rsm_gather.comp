@@ -94,8 +94,8 @@ void main() {
     n = texelFetch(normal, pixel, 0).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
-    face = faceAt(pixel, n);
     position = positionFromDepth(depthView, vec2(pixel) + 0.5, background ? 1.0 : z);
+    face = faceAt(pixel, n, depthView, position, texelFetch(normal, pixel, 0).w).xyz;
 #ifdef ROTATE
     uint seed = pixelSeed(uvec2(pixel), randomGather, frame.seed);
     uint first = frame.index * uint(SAMPLES);

@@ -30,8 +30,8 @@ void main() {
     vec3 n = imageLoad(normal, pixel).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
-    vec3 face = faceAt(pixel, n);
     vec3 origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
+    vec4 face = faceAt(pixel, n, depthView, origin, imageLoad(normal, pixel).w);
     vec3 surface = texelFetch(material, pixel, 0).xyz;
     bool traced = !background && surface.x <= maximumRoughness && surface.z < 0.5;
     float alpha = ggxAlpha(surface.x);

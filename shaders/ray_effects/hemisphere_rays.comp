@@ -23,13 +23,14 @@ void main() {
     vec3 n = imageLoad(normal, pixel).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
-    vec3 face = faceAt(pixel, n);
+    vec3 position = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
+    vec4 face = faceAt(pixel, n, depthView, position, imageLoad(normal, pixel).w);
     vec2 u = scrambledSobol(frame.index, pixelSeed(uvec2(pixel), randomRayDirection, frame.seed));
     float tMax = maximumDistance > 0.0 ? maximumDistance : uintBitsToFloat(0x7f800000u);
     int at = 3 * (pixel.y * size.x + pixel.x);
-    rays[at] = vec4(positionFromDepth(depthView, vec2(pixel) + 0.5, z), 0.0);
+    rays[at] = vec4(position + face.w * face.xyz, 0.0);
     vec3 direction = cosineHemisphere(u, n);
-    bool exists = !background && leavesFace(direction, face);
+    bool exists = !background && leavesFace(direction, face.xyz);
     rays[at + 1] = vec4(direction, tMax);
-    rays[at + 2] = vec4(face, uintBitsToFloat(exists ? 1u : 0u));
+    rays[at + 2] = vec4(face.xyz, uintBitsToFloat(exists ? 1u : 0u));
 }

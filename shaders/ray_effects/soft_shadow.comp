@@ -150,8 +150,8 @@ void main() {
     vec3 n = texelFetch(normal, pixel, 0).xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
-    vec3 face = faceAt(pixel, n);
     vec3 origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
+    vec4 face = faceAt(pixel, n, depthView, origin, texelFetch(normal, pixel, 0).w);
     uint seed = pixelSeed(uvec2(pixel), randomShadow, frame.seed);
 
     vec3 light = vec3(0.0);

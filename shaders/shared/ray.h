@@ -8,6 +8,21 @@ SHARED_BEGIN
 // horizon, or along it as far as float can tell, does not: it is not traced, and nothing arrives along it.
 inline bool leavesFace(vec3 direction, vec3 face) { return dot(direction, face) > 1e-6f; }
 
+// How far along the normal of its face a ray has to start so that rounding does not take it back onto the face. Each part
+// is what one error depends on: the depth of the pixel (`distance` of the point from the eye), the coordinates of the point
+// (`largest` of their magnitudes), and the test against the face, whose corners may lie far away (`reach`, faceReach()).
+// Nothing else counts: not the size of the scene.
+inline float rayStart(float distance, float largest, float reach) {
+    return max(3.0517578e-5f * distance, max(4.7683716e-7f * largest, 9.5367432e-7f * reach)); // 2^-15, 2^-21, 2^-20
+}
+
+// How far the corners lie off a point of their plane, each component counted by the normal's: 0 along an axis that the
+// normal is perpendicular to, where no rounding moves the plane.
+inline float faceReach(vec3 normal, vec3 point, vec3 p0, vec3 p1, vec3 p2) {
+    const vec3 n = abs(normal);
+    return max(dot(n, abs(p0 - point)), max(dot(n, abs(p1 - point)), dot(n, abs(p2 - point))));
+}
+
 struct RayRecord {
     vec3 origin;
     float tMin;

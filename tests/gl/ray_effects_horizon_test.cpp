@@ -121,5 +121,39 @@ TEST_F(Horizon, LightFromBelowTheFaceIsShadowedByTheSurface) {
     EXPECT_GT(count, 50);
 }
 
+// A box on a ground; what is under it and beside it must not see how far the ground goes.
+TEST_F(Horizon, AGroundOfTwoHundredKilometresChangesNoContact) {
+    const auto scene = [](float half) {
+        std::vector<glm::vec3> corners = parallelogram({-half, 0, -half}, {0, 0, 2 * half}, {2 * half, 0, 0});
+        for (int axis = 0; axis < 3; ++axis)
+            for (const float side : {0.0f, 1.0f}) {
+                glm::vec3 corner(-0.5f, 0, -0.5f), u(0), v(0);
+                corner[axis] += side;
+                u[(axis + 1) % 3] = v[(axis + 2) % 3] = 1;
+                corners = joined(corners, parallelogram(corner, u, v));
+            }
+        return trianglesScene(corners);
+    };
+    const CameraState camera = lookingAt({2, 0.8f, 2.5f}, {0, -0.3f, 0}); // of a scene of height 1 around 0
+    const PortRef embree{"reference", "visibility"};
+    for (const bool reference : {true, false}) {
+        if (reference && !hasReferences()) continue;
+        const PortRef port = reference ? embree : skyVisible;
+        const Graph graph = reference ? shippedGraph("reference_ao") : effectsGraph({port});
+        const int frames = reference ? 1 : 16;
+        const Image near = run(graph, scene(10), {port}, frames, camera)[0];
+        const Image far = run(graph, scene(100'000), {port}, frames, camera)[0];
+        double dark = 1, sum = 0;
+        for (size_t i = 0; i < near.values.size(); ++i) {
+            dark = std::min(dark, double{near.values[i]});
+            sum += std::abs(double{near.values[i]} - double{far.values[i]});
+        }
+        EXPECT_LT(dark, 0.6) << reference; // the contact
+        // Rasterized points of triangles of 200 km lie millimetres beside where they ought to: the contact
+        // moves by as much.
+        EXPECT_LT(sum / static_cast<double>(near.values.size()), reference ? 0.006 : 0.01) << reference;
+    }
+}
+
 } // namespace
 } // namespace kestrel::test

@@ -19,15 +19,14 @@ TEST_F(Rays, TheBvhInGlslFindsWhatTheCpuFinds) {
     const auto rays = as<shared::RayRecord>(made.readBytes({"rays", "rays"}));
     const auto hits = as<shared::HitRecord>(made.readBytes({"by_bvh", "hits"}));
     const Bvh bvh = buildBvh(flatten(scene, 0));
-    const SceneFacts facts = gatherFacts(scene);
     ASSERT_EQ(rays.size(), hits.size());
     size_t traced = 0, different = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
         if ((rays[i].flags & 1u) == 0) continue;
         const glm::vec3 o = rays[i].origin;
-        const float scale = std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z), facts.sphere.radius});
-        const auto expected = closestHit(
-            bvh, {o + rays[i].normal * (0x1p-15f * scale), rays[i].direction, rays[i].tMin, rays[i].tMax});
+        const float start = shared::rayStart(0, std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}), 0);
+        const auto expected =
+            closestHit(bvh, {o + start * rays[i].normal, rays[i].direction, rays[i].tMin, rays[i].tMax});
         ++traced;
         const bool hit = std::isfinite(hits[i].t);
         if (hit != expected.has_value() ||
@@ -126,9 +125,41 @@ TEST_F(Rays, EveryHitIsCountedAsByEmbree) {
         }
     }
     EXPECT_GT(sum / (64 * 36), 5); // the lattice is deep
-    // Edges shared by two triangles may count once or twice; exact agreement is asked of all but 2 % of the
-    // pixels.
-    EXPECT_LE(different, 64u * 36u / 50u);
+    // One rule on both sides; their rays are the same but for rounding, which shows at silhouettes.
+    EXPECT_LE(different, 64u * 36u / 200u);
+}
+
+// A sheet whose vertices, and then whose edges, stand at the middles of pixels.
+TEST_F(Rays, ASurfaceIsCountedOnceAtEveryVertexAndEdge) {
+    for (const int cells : {1, 8, 16}) {
+        std::vector<glm::vec3> corners;
+        const auto at = [&](int x, int y) {
+            return glm::vec3(x, y, 0) * (2.0f / static_cast<float>(cells)) - glm::vec3(1, 1, 0);
+        };
+        for (int y = 0; y < cells; ++y)
+            for (int x = 0; x < cells; ++x)
+                corners.insert(corners.end(), {at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y),
+                                               at(x + 1, y + 1), at(x, y + 1)});
+        for (const bool orthographic : {true, false}) {
+            CameraState camera;
+            camera.view = glm::lookAt(glm::vec3(0, 0, 2), glm::vec3(0), glm::vec3(0, 1, 0));
+            camera.position = {0, 0, 2};
+            camera.orthographic = orthographic;
+            // Eight pixels across the sheet's middle half: a pixel's middle every eighth from a sixteenth on.
+            camera.halfHeight = 0.5f;
+            camera.verticalFov = 2 * std::atan(0.25f);
+            camera.farPlane = 0;
+            for (const std::uint32_t size : {8u, 64u}) {
+                RenderOptions options;
+                Renderer made =
+                    renderer(shippedGraph("hit_count"), trianglesScene(corners), options, {size, size, 1});
+                made.setFreeCamera(camera);
+                made.frame();
+                for (const float count : made.read({"count", "count"}).values)
+                    ASSERT_EQ(count, 1.0f) << cells;
+            }
+        }
+    }
 }
 
 } // namespace
