@@ -1,4 +1,5 @@
 #include "composite.h"
+#include "dielectric_layer.h"
 #include "execute/commands.h"
 #include <fmt/format.h>
 
@@ -37,6 +38,18 @@ PassType Composite::type() {
         table.optionalInput(part.port, PortKind::Texture, part.description)
             .carries(part.content)
             .sameExtentAs("albedo");
+    table
+        .optionalInput("depth", PortKind::Texture,
+                       "Reversed depth: with normal and material, for the mix of layers")
+        .carries(content::depth)
+        .sameExtentAs("albedo")
+        .optionalInput("normal", PortKind::Texture,
+                       "Normals of the surfaces, unit, render space: the dielectric layer keeps part of the "
+                       "diffuse light, "
+                       "more of it as it is seen flatter (glTF 2.0, appendix B)")
+        .carries(content::normal)
+        .sameExtentAs("albedo")
+        .internal("layer", PortKind::Buffer, "What the layer lets through, by cosine and roughness");
     table.output("result", PortKind::Texture, "Outgoing radiance; a is 1 where something is")
         .vector("ambient", &Composite::ambient, 0, 1e9, "radiance",
                 "Light from all sides besides the inputs: albedo times this, darkened by visibility");
@@ -49,6 +62,7 @@ Declaration Composite::declare(const World&, const Inputs& inputs, const Demand&
     declaration.outputs = {
         {.port = "result", .desc = Desc::texture2D(Format::RGBA32F, albedo.extent, albedo.view)}};
     Step step{.name = "composite",
+              .run = &Composite::compose,
               .shaders = {"lighting/composite.comp"},
               .defines = {{"ALBEDO_FORMAT", std::string(formatInfo(albedo.format).name)}},
               .uses = {{.port = "albedo", .access = Access::Image},
@@ -72,13 +86,29 @@ Declaration Composite::declare(const World&, const Inputs& inputs, const Demand&
         // By sampler: there may be more inputs than image units.
         step.uses.push_back({.port = part.port, .access = Access::Fetch});
     }
+    if (step.defines.contains("MATERIAL") && inputs.connected("normal") && inputs.connected("depth")) {
+        declaration.outputs.push_back(
+            {.port = "layer",
+             .desc = Desc::buffer(dielectricLayerTable().size() * sizeof(float), Format::R32F)});
+        declaration.steps.push_back(
+            {.name = "layer",
+             .run = [](Commands& commands) { commands.upload("layer", dielectricLayerTable()); },
+             .uses = {{.port = "layer", .access = Access::Copy, .write = true}},
+             .group = "composite"});
+        step.defines.emplace("LAYER_SIDE", std::to_string(dielectricLayerSide));
+        for (const char* port : {"normal", "depth", "layer"})
+            step.uses.push_back({.port = port, .access = Access::Fetch});
+    } else if (inputs.connected("material")) {
+        declaration.leftOut.push_back(
+            {"mix of layers", "normal, depth or material is not connected, or nothing is there"});
+    }
     declaration.steps.push_back(std::move(step));
     declaration.depends = Causes::Properties;
     return declaration;
 }
 
-void Composite::execute(const Step& step, Commands& commands) {
-    if (step.defines.contains("AMBIENT")) commands.set("ambient", ambient);
+void Composite::compose(Commands& commands) const {
+    if (ambient != glm::vec3(0)) commands.set("ambient", ambient);
     commands.dispatchOver(commands.desc("result").extent);
 }
 

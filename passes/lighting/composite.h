@@ -9,9 +9,11 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void execute(const Step& step, Commands& commands) override;
 
     glm::vec3 ambient{0};
+
+private:
+    void compose(Commands& commands) const;
 };
 
 } // namespace kestrel

@@ -15,7 +15,7 @@ public:
                                       const Demand& demand) const override;
 
     int resolution = 512;
-    bool directional = false;
+    bool directional = true;
     bool areaLights = true;
     bool jitter = false;
     float positionJitter = 0;

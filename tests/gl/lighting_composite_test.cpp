@@ -78,7 +78,7 @@ TEST_F(CompositeTest, LeavesOutWhatIsNeutral) {
 
 // The specular lobe against glTF's own formulas, at one pixel each.
 TEST_F(CompositeTest, SpecularLightFollowsTheMicrofacetModel) {
-    for (const float roughness : {0.2f, 0.5f, 1.0f}) {
+    for (const float roughness : {0.1f, 0.2f, 0.5f, 1.0f}) {
         const glm::vec3 at(0.4f, -0.3f, 1), colour(0.9f, 0.6f, 0.3f);
         Scene scene = litScene(square(), {{lightOf(LightKind::Point, 3), at, {0, 0, -1}}}, colour);
         scene.materials[0].roughness = roughness;
@@ -88,9 +88,7 @@ TEST_F(CompositeTest, SpecularLightFollowsTheMicrofacetModel) {
         for (const glm::ivec2 pixel : {glm::ivec2(20, 30), glm::ivec2(40, 36), glm::ivec2(60, 5)}) {
             const glm::vec3 p = squarePoint(image, pixel.x, pixel.y), n(0, 0, 1), view(0, 0, 1);
             const glm::vec3 to = at - p, l = glm::normalize(to), h = glm::normalize(l + view);
-            // 8 bits hold the roughness.
-            const float stored = std::round(roughness * 255) / 255;
-            const double a2 = std::pow(double{stored}, 4.0);
+            const double a2 = std::pow(double{roughness}, 4.0);
             const double nh = double{glm::dot(n, h)}, nl = double{glm::dot(n, l)}, nv = 1;
             const double d = a2 / (std::numbers::pi * std::pow(nh * nh * (a2 - 1) + 1, 2));
             const double v =
@@ -104,6 +102,45 @@ TEST_F(CompositeTest, SpecularLightFollowsTheMicrofacetModel) {
             }
         }
     }
+}
+
+// In a white surrounding of radiance 1 no surface shines more than it: diffuse light under the layer and what
+// the specular lobe reflects.
+TEST_F(CompositeTest, AWhiteSurfaceInAWhiteFurnaceGivesBackAtMostWhatArrives) {
+    for (const float roughness : {0.05f, 0.3f, 1.0f})
+        for (const float metallic : {0.0f, 0.5f, 1.0f})
+            for (const float tilt : {0.0f, 50.0f, 70.0f, 80.0f, 87.0f}) {
+                Scene scene = litScene(
+                    square(glm::mat3(glm::rotate(glm::mat4(1), glm::radians(tilt), glm::vec3(1, 0, 0)))), {},
+                    {1, 1, 1});
+                scene.materials[0].roughness = roughness;
+                scene.materials[0].metallic = metallic;
+                Graph graph = graphOf(
+                    R"("g": {"type": "GBuffer"}, "sky": {"type": "Environment", "properties": {"kind": "constant"}},
+                    "bvh": {"type": "Bvh"}, "glossy": {"type": "GlossyReflection", "properties": {"rays": 64}},
+                    "composite": {"type": "Composite", "properties": {"ambient": [1, 1, 1]}})",
+                    R"(["g.depth", "glossy.depth"], ["g.normal", "glossy.normal"], ["g.albedo", "glossy.albedo"],
+                    ["g.material", "glossy.material"], ["bvh.tracer", "glossy.tracer"], ["sky.radiance", "glossy.radiance"],
+                    ["g.albedo", "composite.albedo"], ["g.material", "composite.material"], ["g.depth", "composite.depth"],
+                    ["g.normal", "composite.normal"], ["glossy.result", "composite.reflection"])",
+                    R"("composite.result")");
+                applySetting(graph, shipped(), "sky.colour=[1,1,1]");
+                const Image image = picture(graph, scene);
+                double sum = 0, count = 0;
+                for (int y = 0; y < 64; ++y)
+                    for (int x = 0; x < 64; ++x)
+                        if (image.at(x, y, 3) > 0) {
+                            sum += image.at(x, y, 0);
+                            ++count;
+                        }
+                ASSERT_GT(count, 0);
+                EXPECT_LE(sum / count, 1.005) << roughness << " " << metallic << " " << tilt;
+                // Seen from above a smooth surface gives back nearly all of it; single scattering loses some
+                // of rough ones.
+                if (tilt == 0 && roughness < 0.5f) {
+                    EXPECT_GE(sum / count, 0.97) << roughness << " " << metallic;
+                }
+            }
 }
 
 struct EnvironmentTest : LightingTest {
