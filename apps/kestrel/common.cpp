@@ -8,13 +8,6 @@
 
 namespace kestrel {
 
-namespace {
-std::FILE* reported = stdout;
-}
-
-void reportTo(std::FILE* stream) { reported = stream; }
-std::FILE* reportStream() { return reported; }
-
 CLI::Validator notEmpty() {
     return {
         [](std::string& text) { return text.empty() ? std::string("it must not be empty") : std::string(); },

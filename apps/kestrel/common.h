@@ -2,24 +2,14 @@
 #pragma once
 #include "graph/graph.h"
 #include "graph/plan.h"
+#include "say.h"
 #include "scene/scene.h"
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <fmt/format.h>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace kestrel {
-
-// Where a command tells about its work: standard output, but standard error where results go to standard
-// output, and nowhere (null) under --quiet, with which only errors are told, and what was asked for as data.
-void reportTo(std::FILE* stream);
-[[nodiscard]] std::FILE* reportStream();
-template<class... Args>
-void say(fmt::format_string<Args...> format, Args&&... args) {
-    if (reportStream() != nullptr) fmt::print(reportStream(), format, std::forward<Args>(args)...);
-}
 
 // A check of an option: that its text is not empty.
 [[nodiscard]] CLI::Validator notEmpty();

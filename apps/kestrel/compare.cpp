@@ -1,11 +1,11 @@
 #include "compare.h"
-#include "common.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "image/colormap.h"
 #include "image/error_figures.h"
 #include "image/io.h"
 #include "image/metrics.h"
+#include "say.h"
 #include <algorithm>
 #include <array>
 #include <charconv>

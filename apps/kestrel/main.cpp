@@ -117,7 +117,7 @@ int main(int argc, char** argv) {
         return tell(ExitStatus::BadInput, (unknown.empty() ? oneLine(error.what()) : unknown) +
                                               " ('kestrel --help' tells the usage)");
     }
-    if (quiet) reportTo(nullptr);
+    if (quiet) reportStream() = nullptr;
     setLogLevel(quiet ? LogLevel::Error : verbose ? LogLevel::Debug : LogLevel::Warning);
     return runGuarded(run);
 }

@@ -154,7 +154,7 @@ int render(const RenderArguments& arguments) {
     options.finishFrames = true;
     Outputs outputs(arguments, graph);
     options.previews = outputs.ports();
-    if (outputs.streamed() && reportStream() != nullptr) reportTo(stderr);
+    if (outputs.streamed() && reportStream() != nullptr) reportStream() = stderr;
     Scene scene = openScene(arguments, graph);
 
     const auto context = gl::Context::create({.backend = gl::backendFromName(arguments.backend)});

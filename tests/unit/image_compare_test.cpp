@@ -123,6 +123,18 @@ TEST_F(Compare, RefusesLimitsItDoesNotUnderstandAllAtOnceAndBeforeReading) {
                        "the value of the limit 'psnr=1dB' is not a finite number");
 }
 
+TEST_F(Compare, AValueThatIsNotFiniteIsToldWithItsFile) {
+    Image broken(8, 8, 1, 0);
+    broken.at(3, 2) = std::numeric_limits<float>::quiet_NaN();
+    const fs::path good = write("good.exr", Image(8, 8, 1, 0)), bad = write("bad.exr", broken);
+    const std::string message =
+        bad.string() + ": the picture has 1 value that is not finite; the first is nan at pixel (3, 2)";
+    EXPECT_EQ(run({.reference = good, .tests = {bad}, .heatMap = {}, .mask = {}, .limits = {}}), -1);
+    EXPECT_EQ(thrown_, message);
+    EXPECT_EQ(run({.reference = bad, .tests = {good}, .heatMap = {}, .mask = {}, .limits = {}}), -1);
+    EXPECT_EQ(thrown_, message);
+}
+
 TEST_F(Compare, RefusesImagesOfDifferentSizesOrKinds) {
     const fs::path a = write("a.png", Image(8, 8, 1, 0));
     const fs::path b = write("b.png", Image(9, 8, 1, 0));
