@@ -266,11 +266,13 @@ TEST_F(Rsm, LightsOfTwoKindsAllCount) {
         for (int x = 0; x < 64; ++x) ASSERT_NEAR(all.at(x, y), sum.at(x, y), 1e-5f) << x << ", " << y;
 }
 
-TEST_F(Rsm, WithoutSpotAndPointLightsItIsBlackAndLeftOut) {
+TEST_F(Rsm, WithoutALightThatIsMappedItIsBlackAndLeftOut) {
     for (const auto& lights :
          {std::vector<PlacedLight>{},
           std::vector<PlacedLight>{{lightOf(LightKind::Directional, 1), {0, 0, 1}, {0, 0, -1}}}}) {
-        auto made = lit(probeGraph(rsm), litScene(square(), lights));
+        Graph graph = probeGraph(rsm);
+        applySetting(graph, withProbe(), "source.directional=false");
+        auto made = lit(graph, litScene(square(), lights));
         made.frame();
         EXPECT_TRUE(leavesOut(made.plan(), "maps: the scene has no light that is mapped"));
         for (const PlanStep& step : made.plan().steps) EXPECT_NE(step.step.name, "draw");
