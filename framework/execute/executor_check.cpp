@@ -54,10 +54,10 @@ void Executor::checkOutputs(const PlanPass& pass) {
         if (!holdsFloats(desc)) continue;
         const double minimum = info != nullptr ? info->minimum : -HUGE_VAL;
         const double maximum = info != nullptr ? info->maximum : HUGE_VAL;
-        const auto refuse = [&](const BadValue& bad, const std::string& place) {
+        const auto refuse = [&, &name = port](const BadValue& bad, const std::string& place) {
             throw Error(ExitStatus::MeasureFailed,
                         {{{},
-                          fmt::format("pass '{}', port '{}', {}, channel {}: {} is {}", pass.name, port,
+                          fmt::format("pass '{}', port '{}', {}, channel {}: {} is {}", pass.name, name,
                                       place, bad.channel, bad.value, bad.what)}});
         };
         if (resources_.isBuffer(resource)) {

@@ -1,5 +1,6 @@
 #include "execute/view_blocks.h"
-#include <cstring>
+#include <algorithm>
+#include <span>
 
 namespace kestrel {
 
@@ -50,10 +51,11 @@ gl::Name ViewBlocks::block(const StepBindings::ViewSlot& view, const FrameViews&
     const shared::ViewData data = viewData(view.view, view.extent, madeIn);
 
     Block& block = blockOf({view.resource, view.previous, view.view});
-    if (!block.buffer || std::memcmp(&block.data, &data, sizeof(data)) != 0) {
+    const auto bytes = std::as_bytes(std::span(&data, 1)), before = std::as_bytes(std::span(&block.data, 1));
+    if (!block.buffer || !std::equal(bytes.begin(), bytes.end(), before.begin())) {
         if (!block.buffer) block.buffer = gl::Buffer(sizeof(shared::ViewData), "View");
         block.data = data;
-        block.buffer.upload(std::as_bytes(std::span(&data, 1)));
+        block.buffer.upload(bytes);
     }
     return block.buffer.name();
 }

@@ -176,8 +176,9 @@ public:
     }
     // An enumeration whose values 0, 1, … have these names.
     template<class Enum>
-    requires std::is_enum_v<Enum> Describe&
-    choice(std::string name, Enum T::*member, std::vector<std::string> choices, std::string description) {
+    requires std::is_enum_v<Enum> Describe& choice(std::string name, Enum T::*member,
+                                                   const std::vector<std::string>& choices,
+                                                   std::string description) {
         PropertyInfo info;
         info.name = std::move(name);
         info.kind = PropertyKind::Choice;

@@ -1,5 +1,6 @@
 #include "image/colormap.h"
 #include "core/check.h"
+#include <cmath>
 #include <cstdint>
 
 namespace kestrel {
@@ -74,7 +75,7 @@ std::array<float, 3> colorOf(ColorMap map, float value) {
     if (value <= 0)
         entry = 0;
     else if (value < 1)
-        entry = static_cast<std::size_t>(value * 255.0F + 0.5F);
+        entry = static_cast<std::size_t>(std::lround(value * 255.0F));
     const std::uint32_t code = table[entry];
     return {static_cast<float>(code >> 16) / 255.0F, static_cast<float>(code >> 8 & 0xffU) / 255.0F,
             static_cast<float>(code & 0xffU) / 255.0F};

@@ -167,8 +167,8 @@ private:
 
     // OpenEXR holds all channels of the lines that are compressed together, however few lines there are.
     void checkBlocks(const Imf::Header& header, std::size_t channels) const {
-        const std::size_t width =
-            static_cast<std::size_t>(header.dataWindow().max.x - header.dataWindow().min.x + 1);
+        const auto width =
+            static_cast<std::size_t>(std::int64_t{header.dataWindow().max.x} - header.dataWindow().min.x + 1);
         const std::size_t lines = linesTogether(header.compression());
         if (width * channels * lines > maxImageValues)
             failImage(name_, fmt::format("has blocks of {}x{} pixels and {} channels; at most {} values are "

@@ -173,6 +173,7 @@ private:
             }
         if (found.empty()) return std::nullopt;
         std::vector<std::string> names;
+        names.reserve(found.size());
         for (const ExrLayer& layer : found) names.push_back(layer.name);
         if (found.size() > 1)
             failImage(name_, fmt::format("has the channel '{}' in several parts: {}", wanted, quoted(names)));

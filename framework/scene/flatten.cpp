@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t classCount = static_cast<size_t>(TriangleClass::Count);
 // Vertices that one thread takes at a time; a multiple of 3, so that triangles with flat normals stay whole.
-constexpr size_t chunkVertices = 3 * 8192;
+constexpr size_t chunkVertices = size_t{3} * 8192;
 
 TriangleClass classOf(const Material& material) {
     if (material.alphaMode == AlphaMode::Opaque)

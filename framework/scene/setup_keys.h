@@ -110,9 +110,9 @@ public:
     }
     // Objects with keys of their own; `what` names one in messages.
     template<class Item>
-    SetupKeys& list(std::string name, std::vector<Item> T::*member, const SetupKeys<Item>& (*keys)(),
+    SetupKeys& list(std::string name, std::vector<Item> T::*member, const SetupKeys<Item>& (*keysOf)(),
                     std::string what, size_t most, std::string description) {
-        const Schema schema = {{"type", "array"}, {"items", keys().schema()}, {"maxItems", most}};
+        const Schema schema = {{"type", "array"}, {"items", keysOf().schema()}, {"maxItems", most}};
         return add({name, std::move(description), Json::Kind::Array, schema,
                     [=](std::vector<Problem>& problems, const Json& json, T& into) {
                         if (json.items.size() > most)
@@ -120,11 +120,11 @@ public:
                                                                         json.items.size(), name, most)});
                         else
                             for (const Json& item : json.items)
-                                keys().read(problems, item, what, (into.*member).emplace_back());
+                                keysOf().read(problems, item, what, (into.*member).emplace_back());
                     },
                     [=](const T& from) {
                         std::vector<std::string> items;
-                        for (const Item& item : from.*member) items.push_back(keys().write(item));
+                        for (const Item& item : from.*member) items.push_back(keysOf().write(item));
                         return items.empty() ? std::string() : fmt::format("[{}]", fmt::join(items, ", "));
                     },
                     [member](T& under, const T& over) {
