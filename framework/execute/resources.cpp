@@ -15,16 +15,14 @@ void requireFits(const PlanResource& resource, const Capabilities& capabilities)
                                        what, need, limit));
     };
     if (desc.kind == ResourceKind::Buffer) {
-        // One with a texel format is read by texels; what binds it as a block is held against that limit
-        // where the use is declared.
-        const bool texels = desc.format != Format::None;
-        const auto limit = static_cast<std::uint64_t>(texels ? capabilities.maxTextureBufferTexels
-                                                             : capabilities.maxStorageBlockBytes);
-        const std::uint64_t size =
-            texels ? static_cast<std::uint64_t>(formatInfo(desc.format).bytes) : std::uint64_t{1};
-        if (desc.bytes / size > limit)
-            refuse(texels ? "a buffer's size in texels" : "a buffer's size in bytes", desc.bytes / size,
-                   limit);
+        // Each use is held against its own limit where it is declared: a block's bytes, or texels. Here what
+        // is beyond both.
+        const auto mostBytes = static_cast<std::uint64_t>(capabilities.maxStorageBlockBytes);
+        const auto mostTexels = static_cast<std::uint64_t>(capabilities.maxTextureBufferTexels);
+        if (desc.bytes <= mostBytes) return;
+        if (desc.format == Format::None) refuse("a buffer's size in bytes", desc.bytes, mostBytes);
+        const std::uint64_t texels = desc.bytes / static_cast<std::uint64_t>(formatInfo(desc.format).bytes);
+        if (texels > mostTexels) refuse("a buffer's size in texels", texels, mostTexels);
         return;
     }
     const auto side = static_cast<std::uint64_t>(

@@ -17,7 +17,8 @@ TEST_F(ShippedErrors, NoGraphPrintsOneOnAnyBuiltinScene) {
                 Graph graph = shippedGraph(name);
                 // References cost what their samples do.
                 for (const GraphPass& pass : std::vector<GraphPass>(graph.passes))
-                    if (const PropertyInfo* samples = shipped().find(pass.type)->property("samples"))
+                    if (const PropertyInfo* samples = shipped().find(pass.type)->property("samples");
+                        samples != nullptr && samples->kind == PropertyKind::Int)
                         applySetting(
                             graph, shipped(),
                             fmt::format("{}.samples={}", pass.name, std::max(1.0, samples->minimum)));
