@@ -229,7 +229,7 @@ void writeFile(const fs::path& file, std::string_view text) {
 fs::path pathInside(const fs::path& folder, std::string_view relative) {
     const fs::path asked(relative);
     const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder);
-    const fs::path full = fs::weakly_canonical(root / asked);
+    fs::path full = fs::weakly_canonical(root / asked);
     const fs::path within = full.lexically_relative(root);
     if (asked.is_absolute() || within.empty() || *within.begin() == "..")
         throw InputError(fmt::format("'{}' leaves the folder of the file that names it", relative));

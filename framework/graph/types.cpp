@@ -43,7 +43,7 @@ Desc Desc::texture2D(Format format, Extent extent, View view) {
     Desc desc;
     desc.format = format;
     desc.extent = {extent.width, extent.height, 1};
-    desc.view = view;
+    desc.view = std::move(view);
     return desc;
 }
 

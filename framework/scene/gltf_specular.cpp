@@ -52,7 +52,8 @@ glm::vec4 meanOf(const TextureImage& image) {
     for (size_t i = 0; i + 3 < image.rgba.size(); i += 4)
         sum += glm::dvec4(double(linearOf(image.rgba[i])), double(linearOf(image.rgba[i + 1])),
                           double(linearOf(image.rgba[i + 2])), image.rgba[i + 3] / 255.0);
-    return glm::vec4(sum / std::max(1.0, static_cast<double>(image.rgba.size() / 4)));
+    const size_t pixels = image.rgba.size() / 4;
+    return glm::vec4(sum / std::max(1.0, static_cast<double>(pixels)));
 }
 
 glm::vec3 diffuseColour(const glm::vec3& factor, const glm::vec3& specular) {

@@ -108,7 +108,7 @@ std::optional<std::string> fileNameIn(std::string_view uri) {
 // The folder of the file as it was named; where that is a link that has no such file beside it, the folder of
 // what it links to.
 fs::path folderOf(const GltfFile& file, const fs::path& name) {
-    const fs::path named = file.path.parent_path();
+    fs::path named = file.path.parent_path();
     std::error_code ignored;
     if (fs::is_symlink(file.path, ignored) && !fs::exists(named / name, ignored))
         return fs::canonical(file.path, ignored).parent_path();

@@ -89,7 +89,7 @@ Declaration AmbientOcclusionFirst::declare(const World& world, const Inputs& inp
         declaration.problems.push_back({"pixels", "the frame has more pixels than a buffer can list", true});
 
     const bool empty = inputs["view_depth"].constant == glm::vec4(0);
-    const auto output = [&](const char* port, Desc desc, std::optional<glm::vec4> background,
+    const auto output = [&](const char* port, const Desc& desc, std::optional<glm::vec4> background,
                             std::optional<glm::vec4> clear = {}) {
         Output made{.port = port, .desc = desc};
         if (empty && background)
@@ -207,7 +207,8 @@ void AmbientOcclusionFirst::occlude(Commands& commands) const {
         // Where the map begins and ends, in pixels of the depth from its own corner.
         const Desc whole = Desc::texture2D(Format::R8, commands.desc("visibility").extent);
         const float unit = 1.0f / static_cast<float>(depth.view.divisor);
-        const auto band = static_cast<float>(depth.view.guard / depth.view.divisor);
+        const int bandTexels = depth.view.guard / depth.view.divisor;
+        const auto band = static_cast<float>(bandTexels);
         const float more = guard > depth.view.guard ? static_cast<float>(guard) * unit : band;
         const glm::vec2 size(whole.extent.width, whole.extent.height);
         commands.set("reach", glm::vec4(glm::vec2(band - more), size + band + more));
