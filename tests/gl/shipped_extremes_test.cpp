@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                                            std::pair{"framebuffer_fetch", "GL_EXT_shader_framebuffer_fetch"},
                                            std::pair{"dominant_axis", static_cast<const char*>(nullptr)},
                                            std::pair{"exact", static_cast<const char*>(nullptr)}),
-                         [](const auto& info) { return std::string(info.param.first); });
+                         [](const auto& of) { return std::string(of.param.first); });
 
 TEST_F(Extremes, TheMethodsOfTheTestAreThoseOfThePass) {
     const PropertyInfo* method = shipped().find("OccupancyMap")->property("method");

@@ -129,8 +129,8 @@ TEST_P(EveryGraph, SharingMemoryAndRunningAgainChangeNoBit) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Graphs, EveryGraph, testing::ValuesIn(allCases()), [](const auto& info) {
-    std::string name = info.param.name();
+INSTANTIATE_TEST_SUITE_P(Graphs, EveryGraph, testing::ValuesIn(allCases()), [](const auto& of) {
+    std::string name = of.param.name();
     std::replace(name.begin(), name.end(), '.', '_');
     return name;
 });
