@@ -34,8 +34,8 @@ LightFaces lightFacesOver(const LightState& light, const Sphere& scene) {
         faces.farPlane = 2 * wide;
         return faces;
     }
-    // Depth is one over the distance, in float: a near plane costs no precision far away, so it can be so near
-    // that a wide scene takes nothing from what stands beside a lamp (a millimetre of 100 km).
+    // Depth is one over the distance, in float: a near plane costs no precision far away, so it can be so
+    // near that a wide scene takes nothing from what stands beside a lamp (a millimetre of 100 km).
     faces.nearPlane = 1e-8f * radius;
     if (light.kind == LightKind::Sphere) faces.nearPlane = std::max(faces.nearPlane, light.halfSize.x);
     if (lightFaces(light) == 1) faces.halfWidth = std::tan(std::clamp(light.outerCone, 1e-3f, wideSpotCone));
