@@ -1,4 +1,5 @@
 #include "draw/hemisphere_effect.h"
+#include "draw/face_input.h"
 #include "draw/ray_steps.h"
 
 namespace kestrel {

@@ -1,7 +1,6 @@
 // What effects share that send rays over the hemisphere of every pixel and bear that a tracer replaces
 // directions by nearby ones (ROMA paper, section 5). Needs no GL.
 #pragma once
-#include "draw/face_input.h"
 #include "graph/registry.h"
 
 namespace kestrel {
@@ -18,18 +17,6 @@ public:
     Estimator estimator = Estimator::CosineRatio;
 
 protected:
-    // The inputs, but for the tracer, whose sentence is the effect's.
-    template<class T>
-    static Describe<T>& addSurface(Describe<T>& table) {
-        return table.input("depth", PortKind::Texture, "Reversed depth of the surfaces")
-            .carries(content::depth)
-            .input("normal", PortKind::Texture, "Their normals, unit, render space")
-            .carries(content::normal)
-            .sameExtentAs("depth")
-            .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
-            .carries(content::normal)
-            .sameExtentAs("depth");
-    }
     // The output "weight" and the properties. `counts`: what a frame adds to a mean; `reach`: what distance
     // means.
     template<class T>

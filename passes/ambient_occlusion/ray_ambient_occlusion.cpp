@@ -1,4 +1,5 @@
 #include "ray_ambient_occlusion.h"
+#include "draw/face_input.h"
 #include "execute/commands.h"
 
 namespace kestrel {

@@ -19,16 +19,9 @@ std::optional<LightMapLayout> layoutOf(const SceneFacts& facts, const Desc& bloc
 } // namespace
 
 PassType RsmGather::type() {
-    return Describe<RsmGather>("RsmGather",
-                               "Indirect light gathered from reflective shadow maps, without visibility")
-        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
-        .carries(content::depth)
-        .input("normal", PortKind::Texture, "Their normals, unit, render space")
-        .carries(content::normal)
-        .sameExtentAs("depth")
-        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
-        .carries(content::normal)
-        .sameExtentAs("depth")
+    Describe<RsmGather> table("RsmGather",
+                              "Indirect light gathered from reflective shadow maps, without visibility");
+    return addSurface(table)
         .input("maps", PortKind::Buffer, "How the maps lie, and the lights")
         .carries(content::elements("LightMap"))
         .input("map_radiance", PortKind::Texture, "Radiance reflected at the maps' texels")

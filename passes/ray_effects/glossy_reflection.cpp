@@ -7,16 +7,9 @@
 namespace kestrel {
 
 PassType GlossyReflection::type() {
-    return Describe<GlossyReflection>("GlossyReflection",
-                                      "Light reflected by rough surfaces, by rays through any tracer")
-        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
-        .carries(content::depth)
-        .input("normal", PortKind::Texture, "Their normals, unit, render space")
-        .carries(content::normal)
-        .sameExtentAs("depth")
-        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
-        .carries(content::normal)
-        .sameExtentAs("depth")
+    Describe<GlossyReflection> table("GlossyReflection",
+                                     "Light reflected by rough surfaces, by rays through any tracer");
+    return addSurface(table)
         .input("albedo", PortKind::Texture, "Their linear base colour")
         .carries(content::colour)
         .sameExtentAs("depth")

@@ -6,16 +6,9 @@
 namespace kestrel {
 
 PassType HemisphereRays::type() {
-    return Describe<HemisphereRays>("HemisphereRays",
-                                    "One ray a pixel over the cosine-weighted hemisphere, as a buffer")
-        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
-        .carries(content::depth)
-        .input("normal", PortKind::Texture, "Their normals, unit, render space")
-        .carries(content::normal)
-        .sameExtentAs("depth")
-        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
-        .carries(content::normal)
-        .sameExtentAs("depth")
+    Describe<HemisphereRays> table("HemisphereRays",
+                                   "One ray a pixel over the cosine-weighted hemisphere, as a buffer");
+    return addSurface(table)
         .output("rays", PortKind::Buffer, "One record a pixel in rows from the bottom (shared/ray.h)")
         .carries(content::elements("RayRecord"))
         .number("distance", &HemisphereRays::distance, 0, 1e9, "scene units",

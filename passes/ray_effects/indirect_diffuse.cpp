@@ -1,4 +1,5 @@
 #include "indirect_diffuse.h"
+#include "draw/face_input.h"
 #include "draw/no_light.h"
 #include "execute/commands.h"
 

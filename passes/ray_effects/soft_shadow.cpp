@@ -40,17 +40,10 @@ shared::EmitterRecord recordOfEmitter(const AreaEmitter& emitter) {
 } // namespace
 
 PassType SoftShadow::type() {
-    return Describe<SoftShadow>(
-               "SoftShadow",
-               "Light straight from area lights and emissive meshes, by shadow rays through any tracer")
-        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
-        .carries(content::depth)
-        .input("normal", PortKind::Texture, "Their normals, unit, render space")
-        .carries(content::normal)
-        .sameExtentAs("depth")
-        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
-        .carries(content::normal)
-        .sameExtentAs("depth")
+    Describe<SoftShadow> table(
+        "SoftShadow",
+        "Light straight from area lights and emissive meshes, by shadow rays through any tracer");
+    return addSurface(table)
         .input("tracer", PortKind::Tracer, "Who answers the visibility queries")
         .output("result", PortKind::Texture, "Irradiance over pi that arrives; 0 where nothing is")
         .carries(content::colour)

@@ -1,9 +1,20 @@
 // What the reference passes that gather light share.
 #pragma once
-#include "graph/pass.h"
+#include "draw/face_input.h"
 #include "reference/gather.h"
 
 namespace kestrel {
+
+// The inputs `position`, `normal` and `face_normal`.
+template<class T>
+Describe<T>& addPlaces(Describe<T>& table) {
+    table.input("position", PortKind::Texture, "Render-space positions of the surfaces")
+        .carries(content::position)
+        .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
+        .carries(content::normal)
+        .sameExtentAs("position");
+    return addFaceNormal(table, "position");
+}
 
 // One step on the host from `reads` and face_normal to `writes`: "result" in rgba32f, others in r32f.
 // Everything is the constant 0, and left out with a reason, where nothing is in view or `leftOut` says why.

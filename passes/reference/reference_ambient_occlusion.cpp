@@ -1,21 +1,15 @@
 #include "reference_ambient_occlusion.h"
 #include "draw/face_input.h"
 #include "execute/commands.h"
+#include "gather_pass.h"
 #include "reference/ambient_occlusion.h"
 
 namespace kestrel {
 
 PassType ReferenceAmbientOcclusion::type() {
-    return Describe<ReferenceAmbientOcclusion>("ReferenceAmbientOcclusion",
-                                               "Ambient occlusion by Embree on the CPU: the truth")
-        .input("position", PortKind::Texture, "Render-space positions of the surfaces")
-        .carries(content::position)
-        .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
-        .carries(content::normal)
-        .sameExtentAs("position")
-        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
-        .carries(content::normal)
-        .sameExtentAs("position")
+    Describe<ReferenceAmbientOcclusion> table("ReferenceAmbientOcclusion",
+                                              "Ambient occlusion by Embree on the CPU: the truth");
+    return addPlaces(table)
         .output("visibility", PortKind::Texture,
                 "Share of the cosine-weighted hemisphere that is open; 1 where nothing is")
         .number("samples", &ReferenceAmbientOcclusion::samples, 2, 65536, "rays",

@@ -6,17 +6,9 @@
 namespace kestrel {
 
 PassType ReferenceGlossyReflection::type() {
-    return Describe<ReferenceGlossyReflection>(
-               "ReferenceGlossyReflection",
-               "Light reflected by rough surfaces by Embree on the CPU: the truth")
-        .input("position", PortKind::Texture, "Render-space positions of the surfaces")
-        .carries(content::position)
-        .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
-        .carries(content::normal)
-        .sameExtentAs("position")
-        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
-        .carries(content::normal)
-        .sameExtentAs("position")
+    Describe<ReferenceGlossyReflection> table(
+        "ReferenceGlossyReflection", "Light reflected by rough surfaces by Embree on the CPU: the truth");
+    return addPlaces(table)
         .input("albedo", PortKind::Texture, "Their linear base colour")
         .carries(content::colour)
         .sameExtentAs("position")

@@ -6,16 +6,9 @@
 namespace kestrel {
 
 PassType ReferenceIndirectDiffuse::type() {
-    return Describe<ReferenceIndirectDiffuse>("ReferenceIndirectDiffuse",
-                                              "One bounce of diffuse light by Embree on the CPU: the truth")
-        .input("position", PortKind::Texture, "Render-space positions of the surfaces")
-        .carries(content::position)
-        .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
-        .carries(content::normal)
-        .sameExtentAs("position")
-        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
-        .carries(content::normal)
-        .sameExtentAs("position")
+    Describe<ReferenceIndirectDiffuse> table("ReferenceIndirectDiffuse",
+                                             "One bounce of diffuse light by Embree on the CPU: the truth");
+    return addPlaces(table)
         .output("result", PortKind::Texture,
                 "Cosine-weighted mean of the radiance that arrives (irradiance over pi); 0 where nothing is")
         .output("weight", PortKind::Texture, "1: all frames count alike")

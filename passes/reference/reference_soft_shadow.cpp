@@ -6,17 +6,10 @@
 namespace kestrel {
 
 PassType ReferenceSoftShadow::type() {
-    return Describe<ReferenceSoftShadow>(
-               "ReferenceSoftShadow",
-               "Light straight from area lights and emissive meshes by Embree on the CPU: the truth")
-        .input("position", PortKind::Texture, "Render-space positions of the surfaces")
-        .carries(content::position)
-        .input("normal", PortKind::Texture, "Their normals, unit, render space; 0 where nothing is")
-        .carries(content::normal)
-        .sameExtentAs("position")
-        .optionalInput("face_normal", PortKind::Texture, faceNormalDescription)
-        .carries(content::normal)
-        .sameExtentAs("position")
+    Describe<ReferenceSoftShadow> table(
+        "ReferenceSoftShadow",
+        "Light straight from area lights and emissive meshes by Embree on the CPU: the truth");
+    return addPlaces(table)
         .output("result", PortKind::Texture, "Irradiance over pi that arrives; 0 where nothing is")
         .output("visibility", PortKind::Texture,
                 "How bright the result is over what it would be without shadows; 1 where no light reaches")
