@@ -111,6 +111,47 @@ TEST_F(RefinePass, AnEmptyMaskIsLeftOutByIndirectDispatch) {
     for (const float depth : made.read({"sd_map", "depths"}).values) ASSERT_EQ(depth, 3.0e38f);
 }
 
+// What a pixel at the border is told by the guard bands is what it would see inside of a larger frame. The
+// larger one is wider by whole tiles of the pattern, so that every pixel has the same samples.
+TEST_F(RefinePass, ABorderPixelIsAsInALargerFrame) {
+    const int more = 32, border = 4;
+    const Extent small{112, 64, 1}, large{small.width + 2 * more, small.height + 2 * more, 1};
+    for (const auto& [source, camera, settings] :
+         {std::tuple("builtin:tower?detail=0.2", "above", std::vector<std::string>{"first_ao_pass.radius=1"}),
+          {"builtin:hall?detail=0.1", "nave", {"first_ao_pass.radius=1"}},
+          {"builtin:hall?detail=0.1", "nave", {"first_ao_pass.kernel=hbao", "first_ao_pass.radius=1.5"}}}) {
+        const Scene scene = loadScene(source);
+        const auto frame = [&, settings = &settings, camera = camera](const Extent& size) {
+            Graph graph = shippedGraph("svao", *settings);
+            graph.outputs = {{byRays, {}}, {aoMask, {}}};
+            RenderOptions options;
+            options.size = size;
+            Renderer made(graph, shipped(), scene, context().capabilities(), options);
+            CameraState state = cameraAt(scene, cameraIndex(scene, camera), 0);
+            const auto heights = static_cast<float>(size.height) / static_cast<float>(small.height);
+            state.verticalFov = 2 * std::atan(std::tan(state.verticalFov / 2) * heights);
+            made.setFreeCamera(state);
+            made.frame();
+            return std::pair(made.read(byRays), made.read(aoMask));
+        };
+        const auto [alone, mask] = frame(small);
+        const auto [around, unused] = frame(large);
+        int pixels = 0, far = 0, occluded = 0, marked = 0;
+        for (int y = 0; y < alone.height; ++y)
+            for (int x = 0; x < alone.width; ++x) {
+                if (std::min({x, y, alone.width - 1 - x, alone.height - 1 - y}) >= border) continue;
+                ++pixels;
+                occluded += alone.at(x, y) < 0.9f ? 1 : 0;
+                marked += mask.at(x, y) > 0 ? 1 : 0;
+                far += std::abs(alone.at(x, y) - around.at(x + more, y + more)) > 0.02f ? 1 : 0;
+            }
+        RecordProperty(fmt::format("{} {}", source, settings.back()), fmt::format("{} of {}", far, pixels));
+        EXPECT_LE(far, pixels / 100) << source << " " << settings.back();
+        EXPECT_GT(occluded, pixels / 20) << source;
+        EXPECT_GT(marked, pixels / 40) << source;
+    }
+}
+
 TEST_F(RefinePass, SamplesOfSeveralStepsAreThoseOfOne) {
     // 16 samples take two steps of rays; the layers take one for both, and all of them in the k-buffer are
     // the same.
