@@ -13,6 +13,8 @@ PassType HorizonAmbientOcclusion::type() {
         .input("normal", PortKind::Texture, "Normals of the surfaces, unit, render space")
         .carries(content::normal)
         .sameExtentAs("view_depth")
+        .optionalInput("layers", PortKind::Layers,
+                       "Depths behind the first surface, of every texel, for `thickness_from` layers")
         .output("visibility", PortKind::Texture,
                 "Share of the cosine-weighted hemisphere that is open; 1 where nothing is")
         .carries({.channels = 1})
@@ -25,13 +27,19 @@ PassType HorizonAmbientOcclusion::type() {
                 "How far occluders count")
         .number("maximum_radius", &HorizonAmbientOcclusion::maximumRadius, 1, 4096, "pixels",
                 "The radius is made smaller where it would look larger")
+        .choice("thickness_from", &HorizonAmbientOcclusion::thicknessFrom, {"constant", "layers"},
+                "How far what the bitmask meets reaches back: by `thickness`, or surfaces alone count, those "
+                "behind the first too")
         .number("thickness", &HorizonAmbientOcclusion::thickness, 0, 1e9, "scene units",
-                "Of what the depth shows, along the line of sight; for the bitmask")
+                "Of what the depth shows, along the line of sight; for the bitmask without layers")
         .number("exponent", &HorizonAmbientOcclusion::exponent, 0.1, 16, "", "Power of the result");
 }
 
 Declaration HorizonAmbientOcclusion::declare(const World& world, const Inputs& inputs, const Demand&) const {
     Declaration declaration;
+    const bool layers = method == Method::Bitmask && thicknessFrom == Thickness::Layers;
+    if (layers && !inputs.connected("layers"))
+        declaration.problems.push_back({"layers", "`thickness_from` layers needs it connected"});
     View inner = inputs["view_depth"].desc.view;
     inner.guard = 0;
     Output visibility{.port = "visibility",
@@ -50,6 +58,12 @@ Declaration HorizonAmbientOcclusion::declare(const World& world, const Inputs& i
                        {.port = "normal", .access = Access::Image},
                        {.port = "visibility", .access = Access::Image, .write = true}}};
     if (method == Method::Bitmask) step.defines.emplace("BITMASK", "1");
+    if (layers) {
+        // How far back a surface reaches, in distances to the next sample: of 1 to 2.5 the one with the least
+        // error on `tower` and `hall` together.
+        step.defines.emplace("LAYERS", "2.0");
+        step.modules.push_back({"layers", 0});
+    }
     declaration.steps.push_back(std::move(step));
     declaration.depends = Causes::Properties;
     return declaration;
@@ -58,7 +72,8 @@ Declaration HorizonAmbientOcclusion::declare(const World& world, const Inputs& i
 void HorizonAmbientOcclusion::execute(const Step&, Commands& commands) {
     commands.set("radius", radius);
     commands.set("maximumRadius", maximumRadius);
-    if (method == Method::Bitmask) commands.set("thickness", thickness);
+    if (method == Method::Bitmask && thicknessFrom == Thickness::Constant)
+        commands.set("thickness", thickness);
     commands.set("exponent", exponent);
     commands.dispatchOver(commands.desc("visibility").extent);
 }

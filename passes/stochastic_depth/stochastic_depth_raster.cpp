@@ -12,12 +12,13 @@ PassType StochasticDepthRaster::type() {
                "stochastic depth map where a mask asks for it")
         .input("view_depth", PortKind::Texture, "Distance of the first surface along the view axis")
         .carries(content::viewDepth)
-        .input("sd_mask", PortKind::Texture, "1 where a texel is asked for; read without `interval`")
+        .optionalInput("sd_mask", PortKind::Texture,
+                       "1 where a texel is asked for; read without `interval`. Without a mask every texel is")
         .carries({.channels = 1})
-        .input("ray_min", PortKind::Texture, "From which distance on each texel looks, as float bits")
+        .optionalInput("ray_min", PortKind::Texture, "From which distance on each texel looks, as float bits")
         .carries({.channels = 1})
         .sameExtentAs("sd_mask")
-        .input("ray_max", PortKind::Texture, "And up to which; 0 where no texel is asked for")
+        .optionalInput("ray_max", PortKind::Texture, "And up to which; 0 where no texel is asked for")
         .carries({.channels = 1})
         .sameExtentAs("sd_mask")
         .output("layers", PortKind::Layers, "The depths kept, in no order but a k-buffer's")
@@ -29,23 +30,24 @@ PassType StochasticDepthRaster::type() {
         .choice("collection", &StochasticDepthRaster::collection, {"coverage_mask", "reservoir", "k_buffer"},
                 "Which fragments stay: per slot the nearest of a random subset; a random sample; the nearest")
         .flag("interval", &StochasticDepthRaster::interval,
-              "Keeps only what lies between the distances that the samples need");
+              "Keeps only what lies between the distances that the samples need")
+        .number("divisor", &StochasticDepthRaster::divisor, 1, 16, "",
+                "Of the frame's resolution per axis, where no mask gives the map's")
+        .number("guard", &StochasticDepthRaster::guard, 0, 4096, "pixels",
+                "Guard band, where no mask gives the map's; that of the depth at least");
 }
 
 Declaration StochasticDepthRaster::declare(const World& world, const Inputs& inputs,
                                            const Demand& demand) const {
     Declaration declaration;
-    const char* const mask = interval ? "ray_max" : "sd_mask";
-    const Desc& map = inputs[mask].desc;
+    const MapShape map = mapShape(world, inputs, interval, divisor, guard, declaration.problems);
     Desc depths = Desc::array2D(Format::R32UI,
                                 {map.extent.width, map.extent.height, static_cast<std::uint32_t>(layers)});
     depths.view = map.view;
-    if (!std::holds_alternative<FrameView>(map.view.source))
-        declaration.problems.push_back({mask, "is not seen by the frame's camera"});
 
     Output images{.port = "depths", .desc = depths};
     const glm::vec4 infinity(0x7f800000); // its bits
-    const bool nothing = world.facts.triangles == 0 || inputs[mask].constant == glm::vec4(0);
+    const bool nothing = world.facts.triangles == 0 || map.empty;
     (nothing ? images.constant : images.clear) = infinity;
     declaration.outputs.push_back(std::move(images));
     if (demand.reads("layers")) {
@@ -71,7 +73,9 @@ Declaration StochasticDepthRaster::declare(const World& world, const Inputs& inp
     draw.defines.emplace(names[static_cast<int>(collection)], "1");
     draw.defines.emplace("LAYERS", std::to_string(layers));
     draw.defines.emplace("MAP", "1");
-    if (interval) {
+    if (map.whole) {
+        draw.defines.emplace("WHOLE_MAP", "1");
+    } else if (interval) {
         draw.defines.emplace("INTERVAL", "1");
         draw.uses.push_back({.port = "ray_min", .access = Access::Image});
         draw.uses.push_back({.port = "ray_max", .access = Access::Image});

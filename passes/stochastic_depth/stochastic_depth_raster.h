@@ -21,6 +21,8 @@ public:
     int layers = 4;
     Collection collection = Collection::CoverageMask;
     bool interval = true;
+    int divisor = 4;
+    int guard = 0;
 };
 
 } // namespace kestrel

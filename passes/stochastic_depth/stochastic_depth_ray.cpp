@@ -14,12 +14,13 @@ PassType StochasticDepthRay::type() {
         .input("view_depth", PortKind::Texture, "Distance of the first surface along the view axis")
         .carries(content::viewDepth)
         .input("hits", PortKind::Hits, "Who enumerates what rays meet")
-        .input("sd_mask", PortKind::Texture, "1 where a texel is asked for; read without `interval`")
+        .optionalInput("sd_mask", PortKind::Texture,
+                       "1 where a texel is asked for; read without `interval`. Without a mask every texel is")
         .carries({.channels = 1})
-        .input("ray_min", PortKind::Texture, "Where each texel's ray begins, as float bits")
+        .optionalInput("ray_min", PortKind::Texture, "Where each texel's ray begins, as float bits")
         .carries({.channels = 1})
         .sameExtentAs("sd_mask")
-        .input("ray_max", PortKind::Texture, "And where it ends; 0 where no texel is asked for")
+        .optionalInput("ray_max", PortKind::Texture, "And where it ends; 0 where no texel is asked for")
         .carries({.channels = 1})
         .sameExtentAs("sd_mask")
         .output("layers", PortKind::Layers, "The depths kept, in no order but a k-buffer's")
@@ -37,23 +38,25 @@ PassType StochasticDepthRay::type() {
         .flag("interval", &StochasticDepthRay::interval,
               "Looks only between the distances that the samples need")
         .flag("jitter", &StochasticDepthRay::jitter,
-              "Takes the samples of 4 x 4 texels at different places within them");
+              "Takes the samples of 4 x 4 texels at different places within them")
+        .number("divisor", &StochasticDepthRay::divisor, 1, 16, "",
+                "Of the frame's resolution per axis, where no mask gives the map's")
+        .number("guard", &StochasticDepthRay::guard, 0, 4096, "pixels",
+                "Guard band, where no mask gives the map's; that of the depth at least");
 }
 
 Declaration StochasticDepthRay::declare(const World& world, const Inputs& inputs,
                                         const Demand& demand) const {
     Declaration declaration;
-    const char* const mask = interval ? "ray_max" : "sd_mask";
-    const Desc& map = inputs[mask].desc;
+    const MapShape map = mapShape(world, inputs, interval, divisor, guard, declaration.problems);
+    const bool bounded = interval && !map.whole;
     const Desc depths = depthMapDesc(layers, map.extent, map.view);
-    if (!std::holds_alternative<FrameView>(map.view.source))
-        declaration.problems.push_back({mask, "is not seen by the frame's camera"});
 
     Output images{.port = "depths", .desc = depths};
-    const bool nothing = world.facts.triangles == 0 || inputs[mask].constant == glm::vec4(0);
+    const bool nothing = world.facts.triangles == 0 || map.empty;
     if (nothing)
         images.constant = glm::vec4(3.0e38f);
-    else
+    else if (!map.whole)
         images.clear = glm::vec4(3.0e38f); // noLayer of lib/layers.glsl
     declaration.outputs.push_back(std::move(images));
     if (demand.reads("layers")) {
@@ -69,29 +72,29 @@ Declaration StochasticDepthRay::declare(const World& world, const Inputs& inputs
     if (!world.facts.hasMasked)
         declaration.leftOut.push_back({"alpha test at hits", "no material is masked or blended"});
 
-    const std::uint64_t texels = std::uint64_t{map.extent.width} * map.extent.height;
-    declaration.outputs.push_back(
-        {.port = "texels", .desc = Desc::buffer(sizeof(shared::WorkListHeader) + 4 * texels)});
-    declaration.steps.push_back({.name = "clear_list",
-                                 .run = &StochasticDepthRay::clearList,
-                                 .uses = {{.port = "texels", .access = Access::Copy, .write = true}},
-                                 .group = "generation"});
-    Step list{.name = "list",
-              .run = &StochasticDepthRay::list,
-              .shaders = {"stochastic_depth/list.comp"},
-              .uses = {{.port = mask, .access = Access::Image},
-                       {.port = "texels", .access = Access::Storage, .write = true}},
-              .group = "generation"};
-    if (interval) list.defines.emplace("WANTED_INTERVAL", "1");
-    declaration.steps.push_back(std::move(list));
+    if (!map.whole) {
+        const std::uint64_t texels = std::uint64_t{map.extent.width} * map.extent.height;
+        declaration.outputs.push_back(
+            {.port = "texels", .desc = Desc::buffer(sizeof(shared::WorkListHeader) + 4 * texels)});
+        declaration.steps.push_back({.name = "clear_list",
+                                     .run = &StochasticDepthRay::clearList,
+                                     .uses = {{.port = "texels", .access = Access::Copy, .write = true}},
+                                     .group = "generation"});
+        Step list{.name = "list",
+                  .run = &StochasticDepthRay::list,
+                  .shaders = {"stochastic_depth/list.comp"},
+                  .uses = {{.port = map.mask, .access = Access::Image},
+                           {.port = "texels", .access = Access::Storage, .write = true}},
+                  .group = "generation"};
+        if (interval) list.defines.emplace("WANTED_INTERVAL", "1");
+        declaration.steps.push_back(std::move(list));
+    }
 
     Step trace{.name = "trace",
                .run = &StochasticDepthRay::trace,
                .shaders = {"stochastic_depth/trace.comp"},
                .defines = materialDefines(world.facts),
                .uses = {{.port = "view_depth", .access = Access::Image},
-                        {.port = "texels", .access = Access::Storage},
-                        {.port = "texels", .access = Access::Indirect},
                         {.port = "depths", .access = Access::Image, .write = true}},
                .modules = {{"hits", requests::AllHits}},
                .group = "tracing"};
@@ -102,7 +105,13 @@ Declaration StochasticDepthRay::declare(const World& world, const Inputs& inputs
     trace.defines.emplace("Z_CULL", zCull ? "true" : "false");
     trace.defines.emplace("JITTER", jitter ? "true" : "false");
     trace.defines.emplace("DEPTHS_FORMAT", std::string(formatInfo(depths.format).name));
-    if (interval) {
+    if (map.whole) {
+        trace.defines.emplace("WHOLE_MAP", "1");
+    } else {
+        trace.uses.push_back({.port = "texels", .access = Access::Storage});
+        trace.uses.push_back({.port = "texels", .access = Access::Indirect});
+    }
+    if (bounded) {
         trace.defines.emplace("INTERVAL", "1");
         trace.uses.push_back({.port = "ray_min", .access = Access::Image});
         trace.uses.push_back({.port = "ray_max", .access = Access::Image});
@@ -122,7 +131,12 @@ void StochasticDepthRay::list(Commands& commands) const {
 }
 
 void StochasticDepthRay::trace(Commands& commands) const {
-    commands.dispatchIndirect("texels", offsetof(shared::WorkListHeader, groups));
+    if (commands.uses("texels")) {
+        commands.dispatchIndirect("texels", offsetof(shared::WorkListHeader, groups));
+        return;
+    }
+    const Extent map = commands.desc("depths").extent;
+    commands.dispatchOver(map.width, map.height);
 }
 
 } // namespace kestrel

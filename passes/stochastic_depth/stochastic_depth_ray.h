@@ -22,6 +22,8 @@ public:
     bool zCull = true;
     bool interval = true;
     bool jitter = true;
+    int divisor = 4;
+    int guard = 0;
 
 private:
     void clearList(Commands& commands) const;

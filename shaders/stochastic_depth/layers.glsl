@@ -5,9 +5,9 @@
 #include "stochastic_depth/map.glsl"
 
 #ifdef DEPTH_BITS
-layout(r32ui) uniform readonly uimage2DArray M(depths);
+layout(r32ui) uniform restrict readonly uimage2DArray M(depths);
 #else
-layout(DEPTHS_FORMAT) uniform readonly image2DArray M(depths);
+layout(DEPTHS_FORMAT) uniform restrict readonly image2DArray M(depths);
 #endif
 layout(std140) uniform M(DepthsView) { ViewData M(view); };
 

@@ -18,7 +18,7 @@ layout(r32f) uniform readonly image2D view_depth;
 #ifdef INTERVAL
 layout(r32ui) uniform readonly uimage2D ray_min;
 layout(r32ui) uniform readonly uimage2D ray_max;
-#else
+#elif !defined(WHOLE_MAP)
 layout(r8ui) uniform readonly uimage2D sd_mask;
 #endif
 layout(r32ui) uniform uimage2DArray depths;
@@ -40,7 +40,7 @@ void main() {
 #ifdef INTERVAL
     float away = depthView.position.w != 0.0 ? depth : distance(v_position, depthView.position.xyz);
     if (away < uintBitsToFloat(imageLoad(ray_min, texel).r) || away > uintBitsToFloat(imageLoad(ray_max, texel).r)) discard;
-#else
+#elif !defined(WHOLE_MAP)
     if (imageLoad(sd_mask, texel).r == 0u) discard;
 #endif
     uint bits = floatBitsToUint(depth);

@@ -1,4 +1,4 @@
-// One ray a listed texel, behind the first surface; of its hits LAYERS depths stay.
+// One ray a listed texel, or with WHOLE_MAP one a texel, behind the first surface; of its hits LAYERS depths stay.
 //
 // RESERVOIR is Listing 1 of the paper: slots fill in the order of the hits, then each further hit replaces a random one with
 // falling probability, where nearer. COVERAGE_MASK keeps a hit in the slots of a random mask where it is the nearest
@@ -53,24 +53,33 @@ bool hits_visit(inout Ray ray, Hit hit) {
 }
 #include <port:hits>
 
+#ifdef WHOLE_MAP
+layout(local_size_x = 8, local_size_y = 8) in;
+#else
 layout(local_size_x = 64) in;
+layout(std430) readonly buffer Texels {
+    WorkListHeader header;
+    uint items[];
+} list;
+#endif
 
 layout(r32f) uniform readonly image2D view_depth;
 #ifdef INTERVAL
 layout(r32ui) uniform readonly uimage2D ray_min;
 layout(r32ui) uniform readonly uimage2D ray_max;
 #endif
-layout(std430) readonly buffer Texels {
-    WorkListHeader header;
-    uint items[];
-} list;
 layout(DEPTHS_FORMAT) uniform writeonly image2DArray depths;
 layout(std140) uniform ViewDepthView { ViewData depthView; };
 layout(std140) uniform DepthsView { ViewData mapView; };
 
 void main() {
+#ifdef WHOLE_MAP
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(texel, ivec2(mapView.size)))) return;
+#else
     if (gl_GlobalInvocationID.x >= list.header.count) return;
     ivec2 texel = unpackPixel(list.items[gl_GlobalInvocationID.x]);
+#endif
     // The pixel of the depth whose ray this is; beyond the image nothing is known of the first surface.
     vec2 place = mapPlaceOf(mapView, texel, JITTER) / float(depthView.divisor) + float(depthView.guard);
     ivec2 pixel = ivec2(floor(place));

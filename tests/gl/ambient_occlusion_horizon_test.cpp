@@ -10,9 +10,12 @@ struct Horizons : ShippedTest {
         Graph made = parseGraph(R"({"kestrel": 1, "passes": {
             "gbuffer": {"type": "GBuffer"}, "bvh": {"type": "Bvh"},
             "rays": {"type": "RayAmbientOcclusion", "properties": {"rays": 256, "distance": 0.5}},
+            "map": {"type": "StochasticDepthRay", "properties": {"collection": "k_buffer", "layers_per_texel": 8,
+                "max_count": 0, "divisor": 1, "jitter": false}},
             "horizons": {"type": "HorizonAmbientOcclusion", "properties": {"slices": 16, "steps": 32}}},
             "edges": [["gbuffer.view_depth", "horizons.view_depth"], ["gbuffer.normal", "horizons.normal"],
-                ["gbuffer.depth", "rays.depth"], ["gbuffer.normal", "rays.normal"], ["bvh.tracer", "rays.tracer"]],
+                ["gbuffer.depth", "rays.depth"], ["gbuffer.normal", "rays.normal"], ["bvh.tracer", "rays.tracer"],
+                ["gbuffer.view_depth", "map.view_depth"], ["bvh.hits", "map.hits"], ["map.layers", "horizons.layers"]],
             "outputs": ["horizons.visibility", "rays.visibility", "gbuffer.coverage"]})",
                                 "test.json");
         for (const std::string& setting : settings) applySetting(made, shipped(), setting);
@@ -29,6 +32,8 @@ struct Horizons : ShippedTest {
                 convertChannels(made.read({"gbuffer", "coverage"}), 1)};
     }
 };
+
+const std::vector<std::string> byLayers = {"horizons.method=bitmask", "horizons.thickness_from=layers"};
 
 TEST_F(Horizons, OpenPlanesAreOpen) {
     for (const char* method : {"gtao", "bitmask"})
@@ -71,6 +76,80 @@ TEST_F(Horizons, LightPassesBehindWhatIsThin) {
         if (std::string(thickness) == "0.01") {
             EXPECT_LE(difference(images[0], images[1]).rms, 0.06);
         }
+    }
+}
+
+// The same planes through a map that is coarser than the picture and jittered: a texel's place lies up to
+// three pixels beside the sample that reads it, which must not raise a plane over itself.
+TEST_F(Horizons, WithLayersOpenPlanesAreOpenWhereverTexelsLie) {
+    for (const float degrees : {0.0f, 30.0f, 70.0f}) {
+        const glm::mat3 turn(glm::rotate(glm::mat4(1), glm::radians(degrees), glm::vec3(0.3f, 1, 0)));
+        // A second plane behind, so that there are layers; it is farther than the radius.
+        std::vector<glm::vec3> behind = square(turn);
+        for (glm::vec3& corner : behind) corner -= turn[2];
+        const auto planes = joined(square(turn), behind);
+        for (const char* divisor : {"map.divisor=1", "map.divisor=4"}) {
+            std::vector<std::string> settings = byLayers;
+            settings.insert(settings.end(), {divisor, "map.jitter=true"});
+            const auto images = seen(planes, lookingAt({0, 0, 2.5f}, {0, 0, 0}), settings);
+            EXPECT_GT(meanWhere(images[0], images[2]), 0.97) << degrees << " " << divisor;
+        }
+    }
+}
+
+TEST_F(Horizons, WithLayersLightPassesBehindWhatIsThin) {
+    const auto scene = joined(parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}),
+                              parallelogram({-1, -0.05f, 0.25f}, {2, 0, 0}, {0, 0.1f, 0}));
+    const auto images = seen(scene, lookingAt({0, 0, 3}, {0, 0, 0}), byLayers);
+    EXPECT_LE(difference(images[0], images[1]).rms, 0.06);
+}
+
+// A strip near the wall is hidden by one that is too far in front to occlude: only layers tell of it.
+TEST_F(Horizons, WithLayersWhatIsHiddenOccludes) {
+    // Behind the wall as much as before it, so that its middle is the scene's.
+    std::vector<glm::vec3> scene = parallelogram({-2, -1, 0}, {4, 0, 0}, {0, 2, 0});
+    for (const auto& more : {parallelogram({-2, -0.17f, 0.25f}, {4, 0, 0}, {0, 0.34f, 0}),
+                             parallelogram({-2, -0.1f, 1.5f}, {4, 0, 0}, {0, 0.2f, 0}),
+                             parallelogram({-2, -0.1f, -1.5f}, {4, 0, 0}, {0, 0.2f, 0})})
+        scene = joined(scene, more);
+    const CameraState camera = lookingAt({0, 0, 3}, {0, 0, 0});
+    // Of the wall beside the front strip, which hides |y| < 0.2 of it.
+    const auto beside = [](const std::vector<Image>& images) {
+        Image mask = images[2];
+        for (float& value : mask.values) value = 0;
+        for (int y = 0; y < mask.height; ++y)
+            for (int x = 0; x < mask.width; ++x) {
+                const double up = (mask.height / 2.0 - y - 0.5) / mask.height * 2 * std::tan(0.4) * 3;
+                mask.at(x, y) = std::abs(up) > 0.21 && std::abs(up) < 0.32 ? 1.0f : 0.0f;
+            }
+        return std::pair(meanWhere(images[0], mask), meanWhere(images[1], mask));
+    };
+    const auto [told, truth] = beside(seen(scene, camera, byLayers));
+    const auto [blind, same] =
+        beside(seen(scene, camera, {"horizons.method=bitmask", "horizons.thickness=0.1"}));
+    EXPECT_EQ(truth, same);
+    EXPECT_LT(truth, 0.92);
+    EXPECT_GT(blind, 0.99);
+    EXPECT_NEAR(told, truth, 0.02);
+}
+
+// What is thick is not filled; what the camera sees of its sides has to tell.
+TEST_F(Horizons, WithLayersACornerIsAsRaysHaveIt) {
+    const auto corner = joined(parallelogram({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}),
+                               parallelogram({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}));
+    const auto images = seen(corner, lookingAt({0, 0.4f, 2.2f}, {0, -0.4f, 0}), byLayers);
+    EXPECT_LE(difference(images[0], images[1]).rms, 0.05);
+}
+
+TEST_F(Horizons, LayersMustBeConnected) {
+    std::vector<std::string> settings = byLayers;
+    settings.emplace_back("horizons.layers=");
+    try {
+        renderer(graph(settings), trianglesScene(square()));
+        FAIL();
+    } catch (const InputError& error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find("`thickness_from` layers needs it connected"), std::string::npos) << message;
     }
 }
 

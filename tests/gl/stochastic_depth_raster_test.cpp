@@ -95,6 +95,32 @@ TEST_F(RasterMap, ItsKBufferIsThatOfRays) {
         }
 }
 
+TEST_F(RasterMap, WithoutAMaskBothAreThatOfTheirOwnSize) {
+    for (const char* scene : rasterScenes) {
+        std::vector<std::string> settings;
+        for (const char* map : {"sd_map", "raster_sd_map"})
+            for (const char* setting :
+                 {"sd_mask=", "ray_min=", "ray_max=", "collection=k_buffer", "divisor=2", "guard=65"})
+                settings.push_back(fmt::format("{}.{}", map, setting));
+        settings.insert(settings.end(), {"sd_map.max_count=0", "sd_map.jitter=false"});
+        Renderer made = svao(scene, settings, {rasterDepths, {"sd_map", "depths"}});
+        made.frame();
+        // The depth's guard band has 64 pixels.
+        const Desc& map = made.desc({"sd_map", "depths"});
+        EXPECT_EQ(map.view, (View{.divisor = 2, .guard = 66}));
+        EXPECT_EQ(made.desc(rasterDepths).view, map.view);
+        const auto drawn = slotsOf(made, rasterDepths, 4), traced = slotsOf(made, {"sd_map", "depths"}, 4);
+        ASSERT_EQ(drawn.size(), traced.size());
+        size_t found = 0, different = 0;
+        for (size_t i = 0; i < drawn.size(); ++i) {
+            found += traced[i] < 1e38f ? 1 : 0;
+            different += std::abs(drawn[i] - traced[i]) <= 1e-4f * traced[i] ? 0 : 1;
+        }
+        EXPECT_GT(found, 500u) << scene;
+        EXPECT_LE(different, found / 50) << scene;
+    }
+}
+
 // Slots are offered nothing but fragments, and in any order the same: twice the same map, whatever is drawn
 // first.
 TEST_F(RasterMap, EveryCollectionKeepsRealDepthsOnly) {

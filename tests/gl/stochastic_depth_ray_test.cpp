@@ -197,6 +197,28 @@ TEST_F(RayMap, TheIntervalBoundsWhatIsSeen) {
     for (size_t i = 0; i < 8; ++i) EXPECT_EQ(all[i], 192) << i;
 }
 
+// Without a mask every texel is traced, whether an interval is asked for or not.
+TEST_F(RayMap, WithoutAMaskItIsTheMapOfAMaskThatIsFull) {
+    const std::vector<std::string> cut = {"map.sd_mask=", "map.ray_min=", "map.ray_max="};
+    for (const char* collection : {"reservoir", "k_buffer"}) {
+        std::vector<std::string> settings = {fmt::format("map.collection={}", collection),
+                                             "map.interval=false", "map.jitter=false"};
+        const auto masked = kept(4, settings);
+        settings.insert(settings.end(), cut.begin(), cut.end());
+        settings.emplace_back("map.divisor=1");
+        const auto whole = kept(4, settings);
+        settings.emplace_back("map.interval=true");
+        EXPECT_EQ(masked, whole) << collection;
+        EXPECT_EQ(masked, kept(4, settings)) << collection;
+    }
+}
+
+TEST_F(RayMap, HalfAMaskIsAMistake) {
+    for (const char* left : {"map.ray_min=", "map.ray_max="})
+        EXPECT_THROW(kept(4, {left}), InputError) << left;
+    EXPECT_THROW(kept(4, {"map.interval=false", "map.sd_mask="}), InputError);
+}
+
 TEST_F(RayMap, AReservoirWithoutCullingIsUniform) {
     const Extent size{64, 64, 1};
     for (const int slots : {1, 2, 4, 8}) {
