@@ -5,7 +5,6 @@
 #   format     every C++ file stands as .clang-format has it
 #   sanitize   the tests that need no GL, under the address and undefined-behaviour sanitizers
 #   strict     every file by itself, without precompiled headers, also for names that hide others: it must include what it uses
-#   debug      the tests in the debug build, which counts the iterations of shaders' loops
 #   tidy       clang-tidy over framework/ and passes/, by .clang-tidy
 #   all        the tests and every stage
 set -euo pipefail
@@ -62,10 +61,6 @@ strict)
     build "$root/build-strict" -DKESTREL_UNITY=OFF -DKESTREL_PCH=OFF -- kestrel_stamp kestrel_glad
     python3 "$root/tests/strict.py" "$root/build-strict/compile_commands.json"
     ;;
-debug)
-    build "$root/build-debug" -DKESTREL_CONFIG=debug -DKESTREL_UNITY=ON -DKESTREL_PCH=ON
-    run "$root/build-debug" -L 'unit|gl' "$@"
-    ;;
 tidy)
     # In the groups of a unity build: the headers, which are most of the work, are read once a group.
     "$root/apps/install.sh" stage
@@ -76,13 +71,13 @@ tidy)
     ;;
 all)
     "$0"
-    for each in format strict sanitize debug tidy; do
+    for each in format tidy strict sanitize; do
         echo "== $each"
         "$0" --stage "$each"
     done
     ;;
 *)
-    echo "tests/run.sh: there is no stage '$stage': format, strict, sanitize, debug, tidy, all" >&2
+    echo "tests/run.sh: there is no stage '$stage': format, tidy, strict, sanitize, all" >&2
     exit 2
     ;;
 esac

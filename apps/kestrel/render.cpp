@@ -25,7 +25,7 @@ struct RenderArguments : GraphArguments {
     std::uint32_t seed = 0;
     std::string folder, stats, backend = "egl";
     std::vector<std::string> outputs;
-    bool keepAll = false, noSharing = false, checkFinite = false, still = false;
+    bool keepAll = false, noSharing = false, checkFinite = false, countIterations = false, still = false;
 };
 
 // What is written when: sequences as their frames are made, the rest once all are.
@@ -150,6 +150,7 @@ int render(const RenderArguments& arguments) {
     options.keepAll = arguments.keepAll;
     options.shareMemory = !arguments.noSharing;
     options.checkFinite = arguments.checkFinite;
+    options.countIterations = arguments.countIterations;
     options.timing = !arguments.stats.empty();
     options.finishFrames = true;
     Outputs outputs(arguments, graph);
@@ -221,6 +222,10 @@ void addRenderCommand(CLI::App& app, Run& run) {
     command->add_flag("--check-finite", arguments->checkFinite,
                       "Stop (exit 1) at the first value that is not a number, infinite or out of its range, "
                       "naming pass, port and pixel");
+    command->add_flag(
+        "--count-iterations", arguments->countIterations,
+        "Count the iterations of shaders' loops, and stop (exit 1) where a nest makes more than "
+        "every driver runs, naming pass and step");
     command->add_option("--backend", arguments->backend, "egl, osmesa or window")->capture_default_str();
     command->footer(
         "PNG files hold one and two channels as they are, colours in sRGB.\n\n"

@@ -80,7 +80,7 @@ void Executor::keepStates(const Plan& next, const Programs& programs, const Stat
 void Executor::adopt(std::shared_ptr<const Plan> next, const StateText& stateText) {
     // Whatever can fail for the user's reasons comes first, on copies: the old plan stays then.
     Programs programs = programs_;
-    programs.adopt(*next, library_, capabilities_);
+    programs.adopt(*next, library_, capabilities_, options.countIterations);
     std::vector<StepBindings> bindings;
     std::vector<std::string> labels;
     std::vector<Problem> problems;

@@ -41,7 +41,7 @@ void Executor::checkIterations() {
                             fmt::format("{}: {} loop nests made more than {} iterations (the most: {})",
                                         labels_[i], block.exhausted, maxIterations, block.maximum)});
     }
-    if (!problems.empty()) throw InputError(std::move(problems));
+    if (!problems.empty()) throw Error(ExitStatus::MeasureFailed, std::move(problems));
 }
 
 void Executor::checkOutputs(const PlanPass& pass) {

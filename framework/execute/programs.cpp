@@ -34,7 +34,8 @@ std::vector<std::string> colourAttachments(const PlanStep& step, const Plan& pla
     return ports;
 }
 
-void Programs::adopt(const Plan& plan, ShaderLibrary& library, const Capabilities& capabilities) {
+void Programs::adopt(const Plan& plan, ShaderLibrary& library, const Capabilities& capabilities,
+                     bool countIterations) {
     std::vector<Problem> problems;
     const auto note = [&](const InputError& error) {
         problems.insert(problems.end(), error.problems().begin(), error.problems().end());
@@ -43,9 +44,7 @@ void Programs::adopt(const Plan& plan, ShaderLibrary& library, const Capabilitie
     std::vector<std::optional<ComposedProgram>> composed(plan.programs.size());
     for (size_t i = 0; i < composed.size(); ++i) try {
             ProgramRequest request = plan.programs[i];
-#ifdef KESTREL_DEBUG
-            request.defines[iterationsDefine] = "1";
-#endif
+            if (countIterations) request.defines[iterationsDefine] = "1";
             composed[i] = compose(request, library);
         } catch (const InputError& error) {
             note(error);

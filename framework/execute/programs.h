@@ -24,9 +24,11 @@ public:
         bool readsLastMotion = false; // uses last frame's transforms
     };
 
-    // Composes and makes what the plan's steps need that is not there yet. Throws InputError with the
-    // problems of all programs; the programs of the plan before stay then.
-    void adopt(const Plan& plan, ShaderLibrary& library, const Capabilities& capabilities);
+    // Composes and makes what the plan's steps need that is not there yet; with `countIterations` such that
+    // loops are counted (shader/iterations.h). Throws InputError with the problems of all programs; the
+    // programs of the plan before stay then.
+    void adopt(const Plan& plan, ShaderLibrary& library, const Capabilities& capabilities,
+               bool countIterations);
 
     [[nodiscard]] size_t cached() const { return cache_.size(); }
     // Of a step by its index; null if it has none.

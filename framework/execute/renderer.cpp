@@ -67,7 +67,7 @@ Renderer::Renderer(Graph graph, const Registry& registry, Scene scene, const Cap
     facts_ = gatherFacts(scene_);
     executor_ = std::make_unique<Executor>(capabilities_, shaderFolders(registry_));
     executor_->registry = &registry_;
-    executor_->options = {options_.timing, options_.checkFinite};
+    executor_->options = {options_.timing, options_.checkFinite, options_.countIterations};
     executor_->report().progress = options_.progress;
     compileGraph(graph_);
     gpu_ = std::make_unique<GpuScene>(scene_);

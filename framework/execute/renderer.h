@@ -23,6 +23,7 @@ struct RenderOptions {
     bool timing = false;           // times every step; waits for the GPU around each where the clock needs it
     bool finishFrames = false;     // waits for the GPU at the end of each frame, so that its time is true
     bool checkFinite = false;      // an Error (MeasureFailed) names the first bad value of any output
+    bool countIterations = false;  // an Error (MeasureFailed) names loops that some driver would cut short
     std::vector<PortRef> previews; // ports to make and keep readable besides the graph's outputs
     std::function<void(const std::string& what, double fraction)> progress; // of long work in one step
 };

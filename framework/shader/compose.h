@@ -9,9 +9,10 @@
 //     stage and sees the program's defines only, whoever includes it first.
 //   - `#include <port:NAME>` names what is connected to a port: a module file, included once an instance.
 //   Inside it
-//     M(x) puts the port path in front of x (`tracer_near_x`), and its own defines hold; both end with its
-//     text. A module sees the program's defines too, unless its own hide them, never those of the module that
-//     includes it.
+//     M(x) puts the port path in front of x (`tracer_near_x`), and its own defines hold, no others: what a
+//   consumer
+//     calls its own switches is nothing to its providers. Both end with the module's text. A library file
+//     that a module includes sees the program's defines, as everywhere.
 //   - Conditionals are judged from the defines. An include in a branch that is surely taken is expanded, in
 //   one that
 //     is surely not taken it is dropped. Where the defines do not decide (a macro that a file defines

@@ -1,4 +1,5 @@
-// The loop guard: a debug build counts the iterations of loop nests in shaders (shaders/lib/iterations.glsl).
+// The loop guard: on demand the iterations of loop nests in shaders are counted
+// (shaders/lib/iterations.glsl).
 //
 // Some drivers stop a loop nest silently after 65,535 iterations; what it would have computed then lacks. So
 // no nest may make more than maxIterations, and shaders whose bounds depend on data count theirs when
@@ -12,7 +13,7 @@ namespace kestrel {
 // The most iterations that an outermost loop with all loops inside it may make in one invocation.
 inline constexpr std::uint32_t maxIterations = 65'000;
 
-inline constexpr const char* iterationsDefine = "KESTREL_DEBUG_ITERATIONS";
+inline constexpr const char* iterationsDefine = "KESTREL_COUNT_ITERATIONS";
 inline constexpr const char* iterationsBlockName = "Iterations";
 
 // The contents of the storage block (std430).

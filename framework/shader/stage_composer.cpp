@@ -6,8 +6,6 @@
 namespace kestrel {
 namespace {
 
-const Defines noDefines;
-
 const std::string& defineText(const std::string& text) {
     static const std::string one = "1";
     return text.empty() ? one : text;
@@ -37,7 +35,7 @@ ComposedStage StageComposer::compose(const std::string& file, ShaderStage stage)
     sources_ = {"(head)"};
     const std::string* text = library_.find(file);
     if (text) {
-        appendFile(file, *text, {Scope::Consumer, {}, &noDefines, &request_.modules}, Truth::Yes);
+        appendFile(file, *text, {Scope::Consumer, {}, &request_.defines, &request_.modules}, Truth::Yes);
     } else {
         problems_.push_back({{}, library_.missing(file)});
     }
@@ -177,7 +175,7 @@ bool StageComposer::includeLibrary(OpenFile& file, const ShaderLine& line, const
         return false;
     }
     libraries_.insert(path);
-    const Scope scope{Scope::Library, {}, &noDefines, nullptr, file.scope.depth};
+    const Scope scope{Scope::Library, {}, &request_.defines, nullptr, file.scope.depth};
     switchScope(file.scope, scope);
     appendFile(path, *text, scope, Truth::Yes);
     switchScope(scope, file.scope);
@@ -260,21 +258,17 @@ bool StageComposer::definesFit(OpenFile& file, const ShaderLine& line, const std
     return fit;
 }
 
-// Ends what only `from` means and begins what only `to` means; a program's define that a module hid comes
-// back.
+// Ends what only `from` means and begins what only `to` means.
 void StageComposer::switchScope(const Scope& from, const Scope& to) {
+    const auto stays = [](const auto& define, const Defines& other) {
+        const auto found = other.find(define.first);
+        return found != other.end() && found->second == define.second;
+    };
     if (!from.prefix.empty()) out_ += "#undef M\n";
-    for (const auto& [name, text] : *from.defines) {
-        out_ += fmt::format("#undef {}\n", name);
-        const auto program = request_.defines.find(name);
-        if (program != request_.defines.end() && !to.defines->contains(name))
-            out_ += defineLine(name, program->second);
-    }
-    for (const auto& [name, text] : *to.defines) {
-        if (request_.defines.contains(name) && !from.defines->contains(name))
-            out_ += fmt::format("#undef {}\n", name);
-        out_ += defineLine(name, text);
-    }
+    for (const auto& define : *from.defines)
+        if (!stays(define, *to.defines)) out_ += fmt::format("#undef {}\n", define.first);
+    for (const auto& define : *to.defines)
+        if (!stays(define, *from.defines)) out_ += defineLine(define.first, define.second);
     if (!to.prefix.empty()) out_ += fmt::format("#define M(x) {}_##x\n", to.prefix);
 }
 
@@ -321,8 +315,6 @@ MacroState StageComposer::macro(std::string_view name, const Scope& scope) const
     if (name.starts_with("GL_")) return {Truth::Unknown, {}};
     if (name == "M") return {scope.prefix.empty() ? Truth::No : Truth::Yes, "()"};
     if (const auto known = scope.defines->find(key); known != scope.defines->end())
-        return {Truth::Yes, defineText(known->second)};
-    if (const auto known = request_.defines.find(key); known != request_.defines.end())
         return {Truth::Yes, defineText(known->second)};
     if (const auto known = macros_.find(key); known != macros_.end()) return known->second;
     return {Truth::No, {}};

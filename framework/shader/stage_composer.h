@@ -23,8 +23,8 @@ private:
     // instance, or a library file (neither).
     struct Scope {
         enum Kind { Consumer, Library, Module } kind = Library;
-        std::string prefix; // of M; empty: M is not defined
-        const Defines* defines = nullptr;
+        std::string prefix;               // of M; empty: M is not defined
+        const Defines* defines = nullptr; // a module's own, else the program's
         const std::map<std::string, ModuleInstance>* modules = nullptr;
         int depth = 0;
     };

@@ -54,6 +54,7 @@ Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& de
     const auto provide = [&](const char* port, const char* define, Bits given) {
         declaration.outputs.push_back({.port = port, .desc = Desc::module(given)});
         Module module{.port = port, .shader = "bvh/bvh.glsl", .defines = {{define, "1"}}, .uses = reads};
+        if (world.facts.hasMasked) module.defines.emplace("MATERIAL_MASKED", "1");
         declaration.modules.push_back(std::move(module));
     };
     if (demand.reads("tracer")) provide("tracer", "PROVIDES_TRACER", provides::Surface);

@@ -1,6 +1,6 @@
 // The loop guard. Some drivers stop a loop nest (an outermost loop with all loops inside it, also those of functions
 // that it calls) silently after 65,535 iterations; no nest may make more than 65,000. Shaders whose bounds depend on data
-// count their iterations in a debug build; elsewhere these macros are nothing.
+// count their iterations where that is asked for (RenderOptions::countIterations); elsewhere these macros are nothing.
 //
 //     void main() {
 //         ITERATIONS_BEGIN;             // before each outermost loop, and before each call outside a loop of a
@@ -17,7 +17,7 @@
 //
 // `exhausted` is how many nests exceeded the limit, `maximum` the most iterations of a nest. The block's name is reserved:
 // the executor binds it, clears it and reads it (framework/shader/iterations.h).
-#ifdef KESTREL_DEBUG_ITERATIONS
+#ifdef KESTREL_COUNT_ITERATIONS
 
 layout(std430) buffer Iterations {
     uint exhausted;

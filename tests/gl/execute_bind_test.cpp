@@ -348,8 +348,7 @@ TEST_F(BindTest, APortThatIsNoUseOfTheStepIsNamed) {
                 HasSubstr("pass 'reach', step 'work': port 'signal' is not among the step's uses"));
 }
 
-#ifdef KESTREL_DEBUG
-TEST_F(BindTest, ALoopNestThatIsTooLongIsNamedInADebugBuild) {
+TEST_F(BindTest, ALoopNestThatIsTooLongIsNamedWhereLoopsAreCounted) {
     addCompute(
         "Long", {"out result"},
         R"(#include "lib/iterations.glsl"
@@ -370,11 +369,16 @@ TEST_F(BindTest, ALoopNestThatIsTooLongIsNamedInADebugBuild) {
             commands.set("iterations_wanted", static_cast<int>(pass.value));
             commands.dispatch(1);
         });
-    EXPECT_EQ(messageOfFrame(graphOf({"long: Long = 64000"}, {}, {"long.result"})), "no error");
-    EXPECT_THAT(messageOfFrame(graphOf({"long: Long = 70000"}, {}, {"long.result"})),
+    RenderOptions options;
+    options.countIterations = true;
+    const auto messageOf = [&](const std::string& iterations, const RenderOptions& given) {
+        return messageOfFrame(graphOf({"long: Long = " + iterations}, {}, {"long.result"}), given);
+    };
+    EXPECT_EQ(messageOf("64000", options), "no error");
+    EXPECT_THAT(messageOf("70000", options),
                 AllOf(HasSubstr("pass 'long', step 'work'"), HasSubstr("65000 iterations")));
+    EXPECT_EQ(messageOf("70000", {}), "no error"); // unasked, nothing is counted
 }
-#endif
 
 // ---- values that no output should hold
 

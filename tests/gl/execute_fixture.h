@@ -5,6 +5,7 @@
 #include "execute/renderer.h"
 #include "gl_fixture.h"
 #include "graph/graph.h"
+#include "support/temporary_folder.h"
 #include <filesystem>
 #include <fmt/format.h>
 #include <functional>
@@ -35,14 +36,7 @@ class ExecuteTest : public GlTest {
 protected:
     void SetUp() override {
         GlTest::SetUp();
-        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::path(::testing::TempDir()) / fmt::format("kestrel_{}", info->name());
-        std::filesystem::create_directories(folder_);
-        registry_.shaderFolders = {folder_};
-    }
-    void TearDown() override {
-        std::filesystem::remove_all(folder_);
-        GlTest::TearDown();
+        registry_.shaderFolders = {folder_.path()};
     }
 
     // Ports as "in NAME", "in? NAME" (optional), "out NAME", "own NAME" (internal), all textures, or with
@@ -205,7 +199,7 @@ protected:
         overFrame(commands);
     }
 
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
     Registry registry_;
     std::map<std::string, int> runs_;
     std::map<std::string, Causes> causes_;

@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "gl_fixture.h"
+#include "support/temporary_folder.h"
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -219,15 +220,10 @@ protected:
         GLint formats = 0;
         glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
         if (formats == 0) GTEST_SKIP() << "the driver has no program binary format";
-        // Cases may run at the same time.
-        folder_ = std::filesystem::path(::testing::TempDir()) /
-                  (std::string("kestrel_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::remove_all(folder_);
         gl::setProgramCache(folder_.string());
     }
     void TearDown() override {
         gl::setProgramCache("");
-        std::filesystem::remove_all(folder_);
         GlTest::TearDown();
     }
     [[nodiscard]] std::vector<std::filesystem::path> files() const {
@@ -250,7 +246,8 @@ protected:
         glDispatchCompute(1, 1, 1);
         return test::as<std::uint32_t>(result.download())[0];
     }
-    std::filesystem::path folder_;
+    test::TemporaryFolder own_;
+    const std::filesystem::path folder_ = own_ / "programs";
 };
 
 TEST_F(ProgramCacheTest, TheSecondTimeTheBinaryIsUsed) {
@@ -312,7 +309,6 @@ TEST_F(ProgramCacheTest, AFolderThatCannotBeWrittenStopsNothing) {
     std::ofstream(folder_.string() + "_file") << "no folder";
     gl::setProgramCache(folder_.string() + "_file");
     EXPECT_EQ(run(make(1)), 31U);
-    std::filesystem::remove(folder_.string() + "_file");
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // The arithmetic of composites, and light from the surroundings.
 #include "image/io.h"
 #include "lighting_fixture.h"
+#include "support/temporary_folder.h"
 
 namespace kestrel::test {
 namespace {
@@ -194,7 +195,7 @@ TEST_F(EnvironmentTest, AGradientGoesFromGroundOverHorizonToZenith) {
 
 TEST_F(EnvironmentTest, APictureIsLookedUpByDirection) {
     // Red tells the longitude, green the latitude; both run from 0 to 1.
-    const std::filesystem::path folder(::testing::TempDir());
+    const TemporaryFolder folder;
     Image picture(256, 128, 3);
     for (int y = 0; y < 128; ++y)
         for (int x = 0; x < 256; ++x) {
@@ -217,7 +218,7 @@ TEST_F(EnvironmentTest, APictureIsLookedUpByDirection) {
 }
 
 TEST_F(EnvironmentTest, PicturesMayLieAnywhereButMustBeThere) {
-    const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "kestrel_environment";
+    const TemporaryFolder folder;
     std::filesystem::create_directories(folder / "model");
     writeImage(folder / "grey.exr", Image(2, 1, 3, 0.25f), Encoding::Linear);
     const std::string scene = (folder / "model" / "scene.gltf").string();
@@ -225,11 +226,10 @@ TEST_F(EnvironmentTest, PicturesMayLieAnywhereButMustBeThere) {
         EXPECT_NEAR(seen(fmt::format(R"("kind": "picture", "file": "{}")", file), scene).at(3, 3, 1), 0.25f,
                     1e-3f)
             << file;
-    std::filesystem::remove_all(folder);
     for (const char* file : {"../secret.exr", "/etc/passwd.exr", "missing.exr"})
-        EXPECT_THROW(seen(fmt::format(R"("kind": "picture", "file": "{}")", file),
-                          (std::filesystem::path(::testing::TempDir()) / "scene.gltf").string()),
-                     InputError)
+        EXPECT_THROW(
+            seen(fmt::format(R"("kind": "picture", "file": "{}")", file), (folder / "scene.gltf").string()),
+            InputError)
             << file;
     EXPECT_THROW(seen(R"("kind": "picture")"), InputError);
 }

@@ -1,5 +1,6 @@
 // Direct light: closed forms and sums over areas, edges of shadows, what is left out, extreme cases.
 #include "lighting_fixture.h"
+#include "support/temporary_folder.h"
 
 namespace kestrel::test {
 namespace {
@@ -393,15 +394,14 @@ public:
 TEST_F(DirectLightTest, ALightsViewSeesWhatItsShadowMapHolds) {
     Registry registry = shipped();
     registry.add(LightViewProbe::type());
-    const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "light_view_shaders";
-    std::filesystem::create_directories(folder);
+    const TemporaryFolder folder;
     std::ofstream(folder / "light_view.vert") << R"(#include "lib/vertex.glsl"
 #include "shared/view.h"
 layout(std140) uniform DepthView { ViewData depth_view; };
 void main() { gl_Position = depth_view.viewProjection * vec4(in_position, 1.0); }
 )";
     std::ofstream(folder / "light_view.frag") << "void main() {}\n";
-    registry.shaderFolders.push_back(folder);
+    registry.shaderFolders.push_back(folder.path());
 
     // Something on every side of the lights, which stand off the middle and look askew.
     std::vector<glm::vec3> corners;

@@ -3,6 +3,7 @@
 #pragma once
 #include "execute/commands.h"
 #include "shipped_fixture.h"
+#include "support/temporary_folder.h"
 #include <fstream>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
@@ -74,10 +75,9 @@ inline const Registry& withProbe() {
     static const Registry instance = [] {
         Registry registry = shipped();
         registry.add(RadianceProbe::type());
-        const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lighting_shaders";
-        std::filesystem::create_directories(folder);
+        static const TemporaryFolder folder;
         std::ofstream(folder / "radiance_probe.comp") << RadianceProbe::shader;
-        registry.shaderFolders.push_back(folder);
+        registry.shaderFolders.push_back(folder.path());
         return registry;
     }();
     return instance;

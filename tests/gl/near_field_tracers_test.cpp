@@ -2,6 +2,7 @@
 // the depth buffer against closed forms and the exact tracer.
 #include "core/files.h"
 #include "draw/material_defines.h"
+#include "support/temporary_folder.h"
 #include "traced_fixture.h"
 
 namespace kestrel::test {
@@ -152,13 +153,12 @@ TEST_F(NearField, TracersOfTracersNest) {
 }
 
 TEST_F(NearField, SurfacesComeFromWhoAnswered) {
-    const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "near_field_shaders";
-    std::filesystem::create_directories(folder);
+    const TemporaryFolder folder;
     writeFile(folder / "surface_query.comp", SurfaceQuery::shader);
     Registry registry = tracedRegistry();
     // the query takes surfaces, which no shipped pass of these graphs does
     registry.add(SurfaceQuery::type());
-    registry.shaderFolders.push_back(folder);
+    registry.shaderFolders.push_back(folder.path());
     const Scene scene = loadScene("builtin:blob?detail=0.1");
     std::vector<std::vector<glm::vec4>> results;
     for (const char* tracer : {"bvh.tracer", "hybrid.tracer", "nested.tracer"}) {

@@ -13,7 +13,7 @@ struct Extremes : ShippedTest {
     // Both tracers, three methods of map (EveryMethod has all), a blur and the hit count.
     static void expectSound(const Scene& scene, Extent size = small) {
         RenderOptions options;
-        options.checkFinite = true;
+        options.checkFinite = options.countIterations = true;
         std::vector<std::pair<const char*, Settings>> runs = {
             {"ray_ao", {}},
             {"ray_ao", {"bom.method=exact", "bom.jitter=true"}},

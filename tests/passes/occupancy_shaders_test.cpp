@@ -64,7 +64,7 @@ TEST(OccupancyShaders, TheTracerCompilesForEveryConsumer) {
                              {"EMPTY", {undefinedChoice, "1"}}};
     for (const auto& [n, bits] : sizes)
         for (const Defines& chosen : allCombinations(choices))
-            for (const char* iterations : {"", "KESTREL_DEBUG_ITERATIONS"}) {
+            for (const char* iterations : {"", "KESTREL_COUNT_ITERATIONS"}) {
                 Defines defines = sized(chosen, n);
                 defines["DIRECTIONS"] = "16";
                 defines["ANGULAR"] = "4";
@@ -87,7 +87,7 @@ TEST(OccupancyShaders, WalkingThroughTheMapCompilesForEveryConsumer) {
                              {"EMPTY", {undefinedChoice, "1"}}};
     for (const auto& [n, bits] : sizes) {
         for (const Defines& chosen : allCombinations(choices))
-            for (const char* iterations : {"", "KESTREL_DEBUG_ITERATIONS"}) {
+            for (const char* iterations : {"", "KESTREL_COUNT_ITERATIONS"}) {
                 Defines defines = sized(chosen, n);
                 defines["ITERATIONS"] = "1024";
                 defines["TOP_LEVEL"] = "3";
@@ -125,7 +125,7 @@ TEST(OccupancyShaders, TheMapCompilesByEveryMethod) {
             if (n > 128) columns["COLUMNS_HIGH"] = "columns_x_high";
             expectValid({{"occupancy/raster.vert", "occupancy/raster.frag"}, columns, {}}, library);
             large["LARGE"] = "1";
-            large["KESTREL_DEBUG_ITERATIONS"] = exact["KESTREL_DEBUG_ITERATIONS"] = "1";
+            large["KESTREL_COUNT_ITERATIONS"] = exact["KESTREL_COUNT_ITERATIONS"] = "1";
             expectValid({{"occupancy/exact.comp"}, exact, {}}, library);
             expectValid({{"occupancy/exact.comp"}, large, {}}, library);
             exact["LEVELS"] = large["LEVELS"] = "3";

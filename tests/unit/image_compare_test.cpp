@@ -2,6 +2,7 @@
 #include "../../apps/kestrel/compare.cpp"
 #include "core/files.h"
 #include "image/metrics.h"
+#include "support/temporary_folder.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -15,14 +16,6 @@ namespace fs = std::filesystem;
 
 class Compare : public testing::Test {
 protected:
-    Compare()
-        : folder_(fs::path(testing::TempDir()) /
-                  (std::string("kestrel_compare_") +
-                   testing::UnitTest::GetInstance()->current_test_info()->name())) {
-        fs::create_directories(folder_);
-    }
-    ~Compare() override { fs::remove_all(folder_); }
-
     fs::path write(const std::string& name, const Image& image) {
         const fs::path file = folder_ / name;
         writeImage(file, image, Encoding::Linear);
@@ -44,7 +37,7 @@ protected:
         return status;
     }
 
-    fs::path folder_;
+    test::TemporaryFolder folder_;
     std::string output_;
     std::string complaints_;
     std::string thrown_;

@@ -3,6 +3,7 @@
 #include "image/io.h"
 #include "support/message.h"
 #include "support/pattern.h"
+#include "support/temporary_folder.h"
 #include "unit/image_file_builders.h"
 #include <bit>
 #include <cmath>
@@ -26,15 +27,7 @@ namespace fs = std::filesystem;
 
 class ImageFiles : public testing::Test {
 protected:
-    // A folder of its own, so that tests that run side by side do not meet.
-    ImageFiles()
-        : folder_(fs::path(testing::TempDir()) /
-                  (std::string("kestrel_image_") +
-                   testing::UnitTest::GetInstance()->current_test_info()->name())) {
-        fs::create_directories(folder_);
-    }
-    ~ImageFiles() override { fs::remove_all(folder_); }
-    fs::path folder_;
+    test::TemporaryFolder folder_;
 };
 
 Image roundTrip(const Image& image, ImageFormat format, Encoding encoding = Encoding::Linear) {

@@ -3,6 +3,7 @@
 #include "measure/sweep_hits.h"
 #include "measure/sweep_results.h"
 #include "shared/ray.h"
+#include "support/temporary_folder.h"
 #include <cmath>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -21,13 +22,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 class SweepResultsTest : public testing::Test {
 protected:
     void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "kestrel_sweep_XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        root = name;
         writeFile(root / "g.json", std::string_view(R"({ "kestrel": 1, "passes": {} })"));
         load();
     }
-    void TearDown() override { std::filesystem::remove_all(root); }
 
     void load(const std::string& more = "") {
         writeFile(root / "s.json",
@@ -90,7 +87,8 @@ protected:
         }
     }
 
-    std::filesystem::path root;
+    test::TemporaryFolder own;
+    const std::filesystem::path& root = own.path();
     Sweep sweep;
     std::vector<SweepPoint> points;
     std::vector<SweepUnit> units;

@@ -3,6 +3,7 @@
 #include "graph/guard.h"
 #include "plugin/loader.h"
 #include "support/folders.h"
+#include "support/temporary_folder.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdexcept>
@@ -44,10 +45,10 @@ TEST(PluginLoader, SaysInWhichWayAPluginIsBadAndLeavesTheRegistryAlone) {
         return result.message.substr(std::min(begin.size(), result.message.size()));
     };
     EXPECT_EQ(fails("/nowhere/at_all.so", PluginFailure::NoFile), "no such file");
-    const fs::path text = fs::path(testing::TempDir()) / "kestrel_text.so";
+    const test::TemporaryFolder folder;
+    const fs::path text = folder / "kestrel_text.so";
     writeFile(text, "not a library");
     EXPECT_THAT(fails(text, PluginFailure::NotLoadable), StartsWith("it does not load: "));
-    fs::remove(text);
     EXPECT_THAT(fails(plugin("lacks_symbol"), PluginFailure::NotLoadable),
                 HasSubstr("kestrelTestSymbolThatNobodyHas"));
     EXPECT_EQ(fails(plugin("no_plugin"), PluginFailure::NotAPlugin),
@@ -69,19 +70,17 @@ TEST(PluginLoader, ANameCanBeTakenOnce) {
 }
 
 TEST(PluginLoader, LoadsFoldersInOrderAndSkipsWhatIsBad) {
-    const fs::path folder = fs::path(testing::TempDir()) / "kestrel_plugins";
-    fs::remove_all(folder);
+    const test::TemporaryFolder folder;
     fs::create_directories(folder / "shaders");
     for (const char* name : {"throws", "good"})
         fs::copy_file(plugin(name), folder / (std::string(name) + ".so"));
     Registry registry;
-    const auto failures = loadPlugins(registry, {folder, "/nowhere"});
+    const auto failures = loadPlugins(registry, {folder.path(), "/nowhere"});
     ASSERT_EQ(failures.size(), 2u);
     EXPECT_EQ(failures[0].failure, PluginFailure::Threw);
     EXPECT_EQ(failures[1].failure, PluginFailure::NoFile);
     EXPECT_THAT(registry.names(), ElementsAre("Good"));
     EXPECT_THAT(registry.shaderFolders, ElementsAre(folder / "shaders"));
-    fs::remove_all(folder);
 }
 
 TEST(PluginLoader, TheEnvironmentAddsFoldersToKestrelsOwn) {

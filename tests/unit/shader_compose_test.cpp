@@ -97,26 +97,39 @@ TEST(Compose, GivesEachModuleItsPrefixAndItsDefines) {
                                       // in: the module's R hides the program's
                                       "#undef R\n#define R 2\n#define S 1\n#define M(x) tracer_##x\n"
                                       "#line 1 2\n"
-                                      // deeper: the outer module's defines do not hold
-                                      "#undef M\n#undef R\n#define R 1\n#undef S\n#define STEPS 7\n"
+                                      // deeper: neither the outer module's defines hold nor the program's
+                                      "#undef M\n#undef R\n#undef S\n#define STEPS 7\n"
                                       "#define M(x) tracer_near_##x\n"
                                       "#line 1 3\n"
                                       "int M(f)() { return STEPS; }\n"
                                       // back again
-                                      "#undef M\n#undef STEPS\n#undef R\n#define R 2\n#define S 1\n"
+                                      "#undef M\n#undef STEPS\n#define R 2\n#define S 1\n"
                                       "#define M(x) tracer_##x\n"
                                       "#line 2 2\n"
                                       // a library file sees the program's defines and no M
-                                      "#undef M\n#undef R\n#define R 1\n#undef S\n"
+                                      "#undef M\n#undef R\n#undef S\n#define R 1\n"
                                       "#line 1 4\n"
                                       "struct T { int x; };\n"
                                       "#undef R\n#define R 2\n#define S 1\n#define M(x) tracer_##x\n"
                                       "#line 3 2\n"
                                       "int M(f)() { return R; }\n"
-                                      "#undef M\n#undef R\n#define R 1\n#undef S\n"
+                                      "#undef M\n#undef R\n#undef S\n#define R 1\n"
                                       "#line 2 1\n"
                                       "void main() {}\n");
     EXPECT_THAT(program.dependencies, ElementsAre("inner.glsl", "lib/t.glsl", "outer.glsl", "x.comp"));
+}
+
+TEST(Compose, AConsumersSwitchIsNothingToItsModules) {
+    ShaderLibrary library;
+    library.addVirtual("lib/bits.glsl", "int bits;\n");
+    library.addVirtual("m.glsl",
+                       "#ifdef BITS\n#include \"lib/bits.glsl\"\n#endif\nint M(f)() { return 1; }\n");
+    library.addVirtual("x.comp", "#include <port:a>\nvoid main() {}\n");
+    EXPECT_THAT(textOf({{"x.comp"}, {{"BITS", "1"}}, {{"a", {"m.glsl", {}, {}}}}}, library),
+                Not(HasSubstr("int bits")));
+    // Its own switch is.
+    EXPECT_THAT(textOf({{"x.comp"}, {}, {{"a", {"m.glsl", {{"BITS", "1"}}, {}}}}}, library),
+                HasSubstr("int bits"));
 }
 
 TEST(Compose, EndsAModulesOwnMacrosWithIt) {

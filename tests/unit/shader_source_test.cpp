@@ -2,6 +2,7 @@
 #include "core/files.h"
 #include "shader/source.h"
 #include "support/message.h"
+#include "support/temporary_folder.h"
 #include <filesystem>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,18 +18,12 @@ using testing::HasSubstr;
 // A folder that exists as long as the test.
 class ShaderFolder : public testing::Test {
 protected:
-    void SetUp() override {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder = fs::path(testing::TempDir()) / "kestrel_shader_source" / info->name();
-        fs::remove_all(folder);
-        fs::create_directories(folder);
-    }
-    void TearDown() override { fs::remove_all(folder); }
     void write(const std::string& path, std::string_view text) const { writeFile(folder / path, text); }
     static std::string messageOf(ShaderLibrary& library, const std::string& path) {
         return test::messageOf([&] { library.text(path); });
     }
-    fs::path folder;
+    test::TemporaryFolder own;
+    const fs::path& folder = own.path();
 };
 
 TEST(ShaderStageOf, ReadsTheEnding) {
