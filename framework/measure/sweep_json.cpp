@@ -115,6 +115,7 @@ RowJson documentJson(const Sweep& sweep, const SweepResults& results) {
             json["reference_noise"] = optionalNumber(record->second.noise);
             json["reference_reports"] = record->second.reports;
             if (record->second.rays > 0) json["reference_hit_share"] = record->second.hitShare;
+            if (record->second.nothingCounts) json["nothing_counts"] = true;
         }
         scenes.push_back(std::move(json));
     }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace kestrel {
 namespace {
@@ -146,9 +147,15 @@ std::string documentText(const TableJson& document) {
         if (found == plots.end()) found = plots.insert(found, {name, {}});
         found->second.push_back(&row);
     }
-    for (const auto& [name, rows] : plots)
-        text +=
-            fmt::format("\n### {}\n\n{}", plainText(name), tableText(document, rows, machines.size() > 1));
+    std::set<std::string> blank;
+    for (const TableJson& scene : document.at("scenes"))
+        if (scene.value("nothing_counts", false)) blank.insert(scene.at("name").get<std::string>());
+    for (const auto& [name, rows] : plots) {
+        text += fmt::format("\n### {}\n\n", plainText(name));
+        if (blank.contains(rows.front()->at("scene").get<std::string>()))
+            text += "No pixel counts here, since the mask is 0 everywhere: times without errors.\n\n";
+        text += tableText(document, rows, machines.size() > 1);
+    }
     if (const size_t missing = document.at("missing").size(); missing > 0)
         text += fmt::format("\nNot measured yet: {} more.\n", missing);
     return text;

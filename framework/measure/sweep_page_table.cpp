@@ -101,7 +101,7 @@ function drawPictures() {
         : 'FLIP ' + digits(r.flip) + ', ' + digits(timeOf(r, state.time)) + ' ms (' + state.time + ')';
       cards.push(make('div', { class: 'card', id: 'row' + r.index }, make('h3', {}, make('span', { class: 'swatch', style: 'background:' + colour(r) }), r.variant),
         r.failed ? make('p', { class: 'failed' }, r.failed)
-          : r.picture ? make('div', { class: 'pair' }, figure(r.picture, caption), figure(r.heat_map, 'FLIP error')) : make('p', { class: 'soft' }, caption),
+          : r.picture ? make('div', { class: 'pair' }, figure(r.picture, caption), r.heat_map ? figure(r.heat_map, 'FLIP error') : make('p', { class: 'soft' }, 'no pixel counts: the mask is 0 everywhere')) : make('p', { class: 'soft' }, caption),
         r.failed ? '' : details(r), command(r.command), make('details', {}, make('summary', {}, 'measure its times again'), command(r.times_command))));
     }
     parts.push(make('h2', {}, 'Pictures: ' + scene.name), make('div', { class: 'pictures' }, cards));

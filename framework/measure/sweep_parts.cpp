@@ -164,7 +164,8 @@ std::string partText(const SweepReferenceRecord& record) {
                      {"reports", record.reports},
                      {"hit_share", record.hitShare},
                      {"rays", record.rays},
-                     {"rays_hash", record.raysHash}});
+                     {"rays_hash", record.raysHash},
+                     {"nothing_counts", record.nothingCounts}});
 }
 
 SweepReferenceRecord referenceRecordOf(const std::string& text, const std::string& file) {
@@ -176,6 +177,7 @@ SweepReferenceRecord referenceRecordOf(const std::string& text, const std::strin
         record.hitShare = json.at("hit_share").get<double>();
         record.rays = json.at("rays").get<double>();
         record.raysHash = json.at("rays_hash").get<std::string>();
+        record.nothingCounts = json.value("nothing_counts", false); // older folders do not have it
     });
 }
 

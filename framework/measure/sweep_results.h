@@ -86,6 +86,7 @@ struct SweepReferenceRecord {
     std::map<std::string, double> reports;
     double hitShare = 0, rays = 0; // of the reference's hits, where there are ray variants
     std::string raysHash;
+    bool nothingCounts = false; // its mask is 0 everywhere: pictures of the scene have times but no errors
 };
 
 std::string partText(const SweepRepetition& repetition);

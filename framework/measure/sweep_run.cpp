@@ -265,16 +265,18 @@ private:
         for (int i = 0; i < asked.frames; ++i) static_cast<void>(renderer->frame());
         reference_ = renderer->read(asked.output);
         if (asked.mask) mask_ = convertChannels(renderer->read(*asked.mask), 1);
-        const bool blank = std::ranges::none_of(mask_.values, [](float value) { return value > 0.5F; });
-        if (asked.mask && blank)
-            throw InputError(asked.where,
-                             fmt::format("the mask {} is 0 everywhere on the scene '{}': no pixel "
-                                         "counts",
-                                         asked.mask->text(), scene.name));
+        if (blankMask())
+            logWarning("{}: the mask {} is 0 everywhere: no pixel counts, and nothing here has an error",
+                       scene.name, asked.mask->text());
+        referenceRecord_.nothingCounts = blankMask();
         referenceRecord_.exposure = sweep_.hdr ? exposureFor(reference_) : 1;
         referenceRecord_.reports = reportsOf(*renderer);
         const auto noise = referenceRecord_.reports.find(asked.output.pass + ".noise");
         if (noise != referenceRecord_.reports.end()) referenceRecord_.noise = noise->second;
+    }
+
+    [[nodiscard]] bool blankMask() const {
+        return !mask_.empty() && std::ranges::none_of(mask_.values, [](float value) { return value > 0.5F; });
     }
 
     void traceReference(const SweepScene& scene) {
@@ -347,14 +349,15 @@ private:
     void compareImage(Renderer& renderer, const SweepUnit& unit, const SweepPoint& point,
                       SweepPicture& picture) {
         const Image image = renderer.read(point.output);
+        picture.picture = folder_.pictureName(unit, point);
+        writePicture(folder_.path() / picture.picture, image, sweep_.hdr, referenceRecord_.exposure);
+        if (referenceRecord_.nothingCounts) return;
         Image map;
         const ErrorFigures figures = measureError(
             reference_, image, {.hdr = sweep_.hdr, .mask = mask_.empty() ? nullptr : &mask_}, &map);
         picture.errors = SweepErrors{figures.mse, figures.ssim, figures.flip.mean, std::nullopt};
         if (std::isfinite(figures.psnr)) picture.errors->psnr = figures.psnr;
-        picture.picture = folder_.pictureName(unit, point);
         picture.heatMap = folder_.heatMapName(unit, point);
-        writePicture(folder_.path() / picture.picture, image, sweep_.hdr, referenceRecord_.exposure);
         writeImage(folder_.path() / picture.heatMap, heatMap(map), Encoding::Linear);
     }
 

@@ -101,6 +101,32 @@ def test_measures_everything_it_names():
         assert abs(float(table[0]["flip"]) - data["rows"][0]["flip"]) < 1e-6
 
 
+def test_an_empty_mask_is_told_and_stops_nothing():
+    """A scene on which no pixel counts has times without errors; the other scene is as ever."""
+    settings = ["first_ao_pass.guard=0", "depth_map.guard=0", "first_ao_pass.cutoff=1"]
+    reference = {"graph": "svao.json", "output": "ray_svao.result", "mask": "first_ao_pass.mask", "set": settings}
+    variants = [{"name": "map", "graph": "svao.json", "output": "second_ao_pass.result", "set": settings}]
+    scenes = [{"name": "blank", "source": "builtin:tower?detail=0.05", "camera": {"eye": [400, 400, 400], "target": [0, 5, 0], "fov": 50}},
+              {"name": "seen", "source": "builtin:tower?detail=0.05", "camera": "outside"}]
+    with folder() as here:
+        file = tiny(here, reference=reference, variants=variants, scenes=scenes, rays=None, times={}, size=[128, 72])
+        text = json.loads(file.read_text())
+        del text["rays"], text["plot"]
+        file.write_text(json.dumps(text))
+        told = kestrel("sweep", file, "--out", f"{here}/out")
+        assert told.status == 0 and "blank: the mask first_ao_pass.mask is 0 everywhere: no pixel counts" in told.err
+        data = results(f"{here}/out")
+        assert data["missing"] == [] and [scene.get("nothing_counts", False) for scene in data["scenes"]] == [True, False]
+        blank, seen = data["rows"]
+        assert blank["failed"] is None and blank["mse"] is None and blank["flip"] is None and blank["ms"]["total"] > 0
+        assert seen["mse"] > 0 and seen["flip"] > 0
+        assert blank["picture"] in files_in(f"{here}/out") and blank["heat_map"] == ""
+        tables = (Path(here) / "out" / "results.md").read_text()
+        assert tables.count("No pixel counts here, since the mask is 0 everywhere") == 1
+        done("sweep", file, "--out", f"{here}/out", "--resume")
+        assert without_times(results(f"{here}/out")) == without_times(data)
+
+
 def test_its_commands_make_its_pictures_again_from_anywhere():
     need_part("embree")
     with folder() as here, folder() as reader:
