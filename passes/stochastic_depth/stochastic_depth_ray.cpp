@@ -1,6 +1,5 @@
 #include "stochastic_depth_ray.h"
 #include "depth_map.h"
-#include "draw/material_defines.h"
 #include "execute/commands.h"
 #include "shared/work_list.h"
 #include <cstddef>
@@ -34,7 +33,9 @@ PassType StochasticDepthRay::type() {
                 "Which hits stay: a random sample; per slot the nearest of a random subset; the nearest")
         .number("max_count", &StochasticDepthRay::maxCount, 0, 4096, "hits",
                 "From so many on each hit shortens the ray to itself (MAX_COUNT); 0: none does")
-        .flag("z_cull", &StochasticDepthRay::zCull, "A reservoir's hit replaces farther ones only")
+        .flag("z_cull", &StochasticDepthRay::zCull,
+              "A reservoir's hit replaces farther ones only, as in Listing 1: where hits come front to back, "
+              "as of Bvh, the first ones stay")
         .flag("interval", &StochasticDepthRay::interval,
               "Looks only between the distances that the samples need")
         .flag("jitter", &StochasticDepthRay::jitter,
@@ -61,7 +62,7 @@ Declaration StochasticDepthRay::declare(const World& world, const Inputs& inputs
     declaration.outputs.push_back(std::move(images));
     if (demand.reads("layers")) {
         const DepthLayers told{
-            .count = layers, .linear = true, .ordered = collection == Collection::KBuffer || layers == 1};
+            .count = layers, .linear = true, .ordered = collection == RayCollection::KBuffer || layers == 1};
         declaration.outputs.push_back({.port = "layers", .desc = Desc::layersModule(told, map.view)});
         declaration.modules.push_back(depthMapModule(depths, layers, jitter));
     }
@@ -74,8 +75,7 @@ Declaration StochasticDepthRay::declare(const World& world, const Inputs& inputs
 
     if (!map.whole) {
         const std::uint64_t texels = std::uint64_t{map.extent.width} * map.extent.height;
-        declaration.outputs.push_back(
-            {.port = "texels", .desc = Desc::buffer(sizeof(shared::WorkListHeader) + 4 * texels)});
+        declaration.outputs.push_back({.port = "texels", .desc = texelListDesc(texels)});
         declaration.steps.push_back({.name = "clear_list",
                                      .run = &StochasticDepthRay::clearList,
                                      .uses = {{.port = "texels", .access = Access::Copy, .write = true}},
@@ -90,33 +90,15 @@ Declaration StochasticDepthRay::declare(const World& world, const Inputs& inputs
         declaration.steps.push_back(std::move(list));
     }
 
-    Step trace{.name = "trace",
-               .run = &StochasticDepthRay::trace,
-               .shaders = {"stochastic_depth/trace.comp"},
-               .defines = materialDefines(world.facts),
-               .uses = {{.port = "view_depth", .access = Access::Image},
-                        {.port = "depths", .access = Access::Image, .write = true}},
-               .modules = {{"hits", requests::AllHits}},
-               .group = "tracing"};
-    constexpr const char* names[] = {"RESERVOIR", "COVERAGE_MASK", "K_BUFFER"};
-    trace.defines.emplace(names[static_cast<int>(collection)], "1");
-    trace.defines.emplace("LAYERS", std::to_string(layers));
-    trace.defines.emplace("MAX_COUNT", std::to_string(maxCount));
-    trace.defines.emplace("Z_CULL", zCull ? "true" : "false");
-    trace.defines.emplace("JITTER", jitter ? "true" : "false");
-    trace.defines.emplace("DEPTHS_FORMAT", std::string(formatInfo(depths.format).name));
-    if (map.whole) {
-        trace.defines.emplace("WHOLE_MAP", "1");
-    } else {
-        trace.uses.push_back({.port = "texels", .access = Access::Storage});
-        trace.uses.push_back({.port = "texels", .access = Access::Indirect});
-    }
-    if (bounded) {
-        trace.defines.emplace("INTERVAL", "1");
-        trace.uses.push_back({.port = "ray_min", .access = Access::Image});
-        trace.uses.push_back({.port = "ray_max", .access = Access::Image});
-    }
-    declaration.steps.push_back(std::move(trace));
+    declaration.steps.push_back(traceStep(world,
+                                          {.layers = layers,
+                                           .collection = collection,
+                                           .maxCount = maxCount,
+                                           .zCull = zCull,
+                                           .jitter = jitter,
+                                           .intervalTexels = bounded ? 1 : 0,
+                                           .wholeMap = map.whole},
+                                          depths, &StochasticDepthRay::trace));
     declaration.depends = Causes::Properties;
     return declaration;
 }

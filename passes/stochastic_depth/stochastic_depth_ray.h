@@ -2,6 +2,7 @@
 // Occlusion", 2024, section 3).
 #pragma once
 #include "graph/registry.h"
+#include "trace_step.h"
 
 namespace kestrel {
 
@@ -10,16 +11,14 @@ namespace kestrel {
 // a still view gives a still map.
 class StochasticDepthRay final : public Pass {
 public:
-    enum class Collection { Reservoir, CoverageMask, KBuffer };
-
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
 
     int layers = 4;
-    Collection collection = Collection::Reservoir;
+    RayCollection collection = RayCollection::Reservoir;
     int maxCount = 8;
-    bool zCull = true;
+    bool zCull = false;
     bool interval = true;
     bool jitter = true;
     int divisor = 4;

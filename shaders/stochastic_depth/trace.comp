@@ -64,7 +64,7 @@ layout(std430) readonly buffer Texels {
 #endif
 
 layout(r32f) uniform readonly image2D view_depth;
-#ifdef INTERVAL
+#ifdef INTERVAL // texels per axis that share one
 layout(r32ui) uniform readonly uimage2D ray_min;
 layout(r32ui) uniform readonly uimage2D ray_max;
 #endif
@@ -94,8 +94,8 @@ void main() {
     ray.tMin = max(tNear, first * (1.0 + depthSeparation) / cosine);
     ray.tMax = tFar;
 #ifdef INTERVAL
-    ray.tMin = max(ray.tMin, uintBitsToFloat(imageLoad(ray_min, texel).r));
-    ray.tMax = min(ray.tMax, uintBitsToFloat(imageLoad(ray_max, texel).r));
+    ray.tMin = max(ray.tMin, uintBitsToFloat(imageLoad(ray_min, texel / INTERVAL).r));
+    ray.tMax = min(ray.tMax, uintBitsToFloat(imageLoad(ray_max, texel / INTERVAL).r));
 #endif
     // Where the first surface is not, nothing can be behind it.
     if (inside && first == 0.0) ray.tMax = -1.0;

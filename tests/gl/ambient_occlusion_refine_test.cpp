@@ -96,6 +96,67 @@ TEST_F(RefinePass, MoreSlotsComeNearerToTheReference) {
     }
 }
 
+TEST_F(RefinePass, MoreHitsComeNearerToTheReference) {
+    double before = 1e9;
+    for (const int hits : {4, 8, 16}) {
+        const Pictures seen =
+            pictures("builtin:lattice", "corner",
+                     {"first_ao_pass.radius=0.4", fmt::format("sd_map.max_count={}", hits)});
+        const double error = seen.error(seen.map);
+        RecordProperty(fmt::format("hits_{}", hits), fmt::format("{}", error));
+        if (hits == 8) {
+            EXPECT_LE(error, 0.25 * seen.error(seen.first));
+        }
+        EXPECT_LT(error, before) << hits;
+        before = error;
+    }
+}
+
+// Where hits come front to back, what comes later is farther: a reservoir whose hits replace farther ones
+// only keeps the first, however many it is shown.
+TEST_F(RefinePass, CullingMakesTheFirstHitsStay) {
+    const auto error = [](const char* count, const char* cull) {
+        const Pictures seen =
+            pictures("builtin:lattice", "corner", {"first_ao_pass.radius=0.4", count, cull});
+        return seen.error(seen.map);
+    };
+    const double four = error("sd_map.max_count=4", "sd_map.z_cull=true"),
+                 sixteen = error("sd_map.max_count=16", "sd_map.z_cull=true");
+    EXPECT_GT(sixteen, 0.9 * four);
+    EXPECT_LT(error("sd_map.max_count=16", "sd_map.z_cull=false"), 0.5 * sixteen);
+}
+
+// Near the border samples leave the picture; what a guard band of the map alone knows of them, against rays.
+TEST_F(RefinePass, TheMapsGuardBandMendsTheBorder) {
+    const std::pair<const char*, const char*> views[] = {{"builtin:tower?detail=0.3", "stairs"},
+                                                         {"builtin:hall?detail=0.3", "nave"},
+                                                         {"builtin:grove?detail=0.1", "path"}};
+    for (const auto& [scene, camera] : views) {
+        const auto picture = [&, scene = scene, camera = camera](const PortRef& port, const char* guard) {
+            Renderer made =
+                svao(scene, camera,
+                     {"first_ao_pass.radius=1", "first_ao_pass.cutoff=3", "depth_map.guard=0", guard}, {port},
+                     {320, 180, 1});
+            made.frame();
+            return made.read(port);
+        };
+        const Image rays = picture(byRays, "first_ao_pass.guard=256"),
+                    with = picture(byMap, "first_ao_pass.guard=256"),
+                    without = picture(byMap, "first_ao_pass.guard=0");
+        constexpr int border = 12;
+        double errorWith = 0, errorWithout = 0;
+        for (int y = 0; y < rays.height; ++y)
+            for (int x = 0; x < rays.width; ++x) {
+                if (std::min({x, y, rays.width - 1 - x, rays.height - 1 - y}) >= border) continue;
+                errorWith += std::pow(double{with.at(x, y)} - double{rays.at(x, y)}, 2);
+                errorWithout += std::pow(double{without.at(x, y)} - double{rays.at(x, y)}, 2);
+            }
+        RecordProperty(fmt::format("border_{}", camera), fmt::format("{}", errorWith / errorWithout));
+        EXPECT_GT(errorWithout, 10) << scene;
+        EXPECT_LE(errorWith, 0.25 * errorWithout) << scene;
+    }
+}
+
 TEST_F(RefinePass, AnEmptyMaskIsLeftOutByIndirectDispatch) {
     std::vector<std::string> settings = onScreen;
     settings.push_back("first_ao_pass.cutoff=1000");

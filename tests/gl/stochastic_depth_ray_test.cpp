@@ -237,8 +237,8 @@ TEST_F(RayMap, TheReservoirEqualsItsListing) {
     const Extent size{16, 12, 1};
     for (const std::uint32_t slots : {1u, 2u, 4u, 8u})
         for (const std::uint32_t maxCount : {4u, 8u, 16u}) {
-            const auto texels =
-                kept(static_cast<int>(slots), {fmt::format("map.max_count={}", maxCount)}, size);
+            const auto texels = kept(static_cast<int>(slots),
+                                     {"map.z_cull=true", fmt::format("map.max_count={}", maxCount)}, size);
             for (std::uint32_t y = 0; y < size.height; ++y)
                 for (std::uint32_t x = 0; x < size.width; ++x) {
                     const std::uint32_t seed = shared::pixelSeed({x, y}, shared::randomStochasticDepth, 0);
