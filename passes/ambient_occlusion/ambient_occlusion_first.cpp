@@ -40,6 +40,9 @@ PassType AmbientOcclusionFirst::type() {
         .output("sd_mask", PortKind::Texture,
                 "Of the stochastic depth map's size: 1 where a sample needs the texel (SD-mask)")
         .carries({.channels = 1})
+        .output("sd_cells", PortKind::Texture,
+                "Of that size: the cells, a quarter of a texel per axis, that samples fall into, a bit each")
+        .carries({.channels = 1})
         .output("ray_min", PortKind::Texture,
                 "Of that size: where the texel's ray interval begins, as float bits; infinity without a mask")
         .carries({.channels = 1})
@@ -101,7 +104,8 @@ Declaration AmbientOcclusionFirst::declare(const World& world, const Inputs& inp
     const auto mapOutput = [&](const char* port, Format format, float clear) {
         output(port, Desc::texture2D(format, map, mapView(depth.view)), glm::vec4(clear), glm::vec4(clear));
     };
-    const bool marks = demand.reads("sd_mask") || demand.reads("ray_min") || demand.reads("ray_max");
+    const bool marks = demand.reads("sd_mask") || demand.reads("sd_cells") || demand.reads("ray_min") ||
+                       demand.reads("ray_max");
     const bool lists = demand.reads("pixels") || marks;
     const bool masks = demand.reads("mask") || lists;
     output("visibility", Desc::texture2D(Format::R16F, extent, inner), glm::vec4(1));
@@ -110,6 +114,7 @@ Declaration AmbientOcclusionFirst::declare(const World& world, const Inputs& inp
     if (masks) output("mask", Desc::texture2D(maskFormat, extent, inner), glm::vec4(0));
     if (lists) output("pixels", Desc::buffer(listBytes, Format::R32UI), glm::vec4(0));
     if (demand.reads("sd_mask")) mapOutput("sd_mask", Format::R8UI, 0);
+    if (demand.reads("sd_cells")) mapOutput("sd_cells", Format::R32UI, 0);
     const bool interval = demand.reads("ray_min") || demand.reads("ray_max");
     if (interval) {
         mapOutput("ray_min", Format::R32UI, 0x7f800000); // the bits of infinity
@@ -172,10 +177,16 @@ Declaration AmbientOcclusionFirst::declare(const World& world, const Inputs& inp
                        {.port = "settings", .access = Access::Uniform},
                        {.port = "pixels", .access = Access::Storage},
                        {.port = "pixels", .access = Access::Indirect}}};
-    mark.defines.emplace("MAP_VIEW", interval ? "RayMinView" : "SdMaskView");
+    mark.defines.emplace("MAP_VIEW", interval                  ? "RayMinView"
+                                     : demand.reads("sd_mask") ? "SdMaskView"
+                                                               : "SdCellsView");
     if (demand.reads("sd_mask")) {
         mark.defines.emplace("SD_MASK", "1");
         mark.uses.push_back(imageOf("sd_mask", true));
+    }
+    if (demand.reads("sd_cells")) {
+        mark.defines.emplace("SD_CELLS", "1");
+        mark.uses.push_back(imageOf("sd_cells", true));
     }
     if (interval) {
         mark.defines.emplace("INTERVAL", "1");

@@ -18,6 +18,9 @@ layout(std430) readonly buffer Pixels {
 #ifdef SD_MASK
 layout(r8ui) uniform writeonly uimage2D sd_mask;
 #endif
+#ifdef SD_CELLS
+layout(r32ui) uniform uimage2D sd_cells;
+#endif
 #ifdef INTERVAL
 layout(r32ui) uniform uimage2D ray_min;
 layout(r32ui) uniform uimage2D ray_max;
@@ -37,9 +40,13 @@ void main() {
         int i = findLSB(bits);
         bits &= bits - 1u;
         DiscSample s = discSample(grid, point, ivec2(depthView.size), kernel.disc[i]);
-        ivec2 texel = mapTexelAt(mapView, (s.place - float(depthView.guard)) * float(depthView.divisor));
+        vec2 framePlace = (s.place - float(depthView.guard)) * float(depthView.divisor);
+        ivec2 texel = mapTexelAt(mapView, framePlace);
 #ifdef SD_MASK
         imageStore(sd_mask, texel, uvec4(1u));
+#endif
+#ifdef SD_CELLS
+        imageAtomicOr(sd_cells, texel, depthCellBit(mapCellAt(mapView, framePlace)));
 #endif
 #ifdef INTERVAL
         float height;

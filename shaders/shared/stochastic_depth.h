@@ -17,6 +17,16 @@ inline vec2 sobolJitter(ivec2 texel) {
     return point + vec2(0.03125f, 0.03125f);
 }
 
+// A texel has so many cells per axis, each a bit: which of them samples fall into.
+const int depthCellsAcross = 4;
+const int depthCells = depthCellsAcross * depthCellsAcross;
+
+inline ivec2 depthCellAt(int bit) { return ivec2(bit % depthCellsAcross, bit / depthCellsAcross); }
+// `cell` counts from the map's corner.
+inline uint depthCellBit(ivec2 cell) {
+    return 1u << uint(cell.x % depthCellsAcross + depthCellsAcross * (cell.y % depthCellsAcross));
+}
+
 inline uint binomial(uint n, uint k) {
     uint result = 1u;
     for (uint i = 1u; i <= k; ++i) result = result * (n + 1u - i) / i;

@@ -7,6 +7,12 @@ ivec2 mapTexelAt(ViewData map, vec2 framePlace) {
     return clamp(texel, ivec2(0), ivec2(map.size) - 1);
 }
 
+// Of the map that has depthCellsAcross texels for each of this one's per axis.
+ivec2 mapCellAt(ViewData map, vec2 framePlace) {
+    ivec2 cell = ivec2(floor(framePlace * float(depthCellsAcross) / float(map.divisor)));
+    return clamp(cell + depthCellsAcross * int(map.guard), ivec2(0), depthCellsAcross * ivec2(map.size) - 1);
+}
+
 // At the centre of a pixel of the frame, where the first surface is known.
 vec2 mapPlaceOf(ViewData map, ivec2 texel, bool jitter) {
     ivec2 own = texel - int(map.guard);
