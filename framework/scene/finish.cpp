@@ -89,7 +89,9 @@ glm::dvec3 anyTangent(const glm::dvec3& normal) {
 }
 
 // Tangents along the texture's u direction, summed over a vertex's triangles and made orthogonal to the
-// normal (E. Lengyel, "Computing Tangent Space Basis Vectors for an Arbitrary Mesh", 2001).
+// normal (E. Lengyel, "Computing Tangent Space Basis Vectors for an Arbitrary Mesh", 2001). The bitangent
+// runs up in the picture, against v: what a normal map calls +y (glTF 2.0, normalTexture) while v counts from
+// the top.
 void makeTangents(Primitive& primitive, int texCoordSet) {
     const std::vector<glm::vec2>& uv = texCoordSet == 1 ? primitive.texCoords1 : primitive.texCoords;
     const size_t count = primitive.positions.size();
@@ -117,7 +119,7 @@ void makeTangents(Primitive& primitive, int texCoordSet) {
         const double length = std::sqrt(glm::dot(flat, flat));
         const bool usable = length > 0 && std::isfinite(length);
         const glm::dvec3 tangent = usable ? flat / length : anyTangent(normal);
-        const double handedness = glm::dot(glm::cross(normal, tangent), alongV[i]) < 0 ? -1 : 1;
+        const double handedness = glm::dot(glm::cross(normal, tangent), alongV[i]) > 0 ? -1 : 1;
         primitive.tangents[i] = glm::vec4(glm::vec3(tangent), static_cast<float>(handedness));
     }
 }

@@ -324,14 +324,32 @@ TEST(FinishScene, MakesTangentsAlongTheTextureWhereANormalMapNeedsThem) {
     quad.material = 0;
     finishScene(scene);
     ASSERT_EQ(quad.tangents.size(), 4u);
-    for (const glm::vec4& tangent : quad.tangents) EXPECT_EQ(tangent, glm::vec4(0, -1, 0, 1));
+    for (const glm::vec4& tangent : quad.tangents) EXPECT_EQ(tangent, glm::vec4(0, -1, 0, -1));
+}
+
+// A picture that hangs upright on a wall: its +y is up, though v runs down (glTF 2.0, normalTexture).
+TEST(FinishScene, UpInANormalMapIsUpInItsPicture) {
+    Scene scene = boxScene();
+    Primitive& wall = scene.meshes[0].primitives[0];
+    wall = {};
+    wall.positions = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+    wall.normals.assign(4, {0, 0, 1});
+    wall.texCoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    wall.indices = {0, 1, 2, 0, 2, 3};
+    scene.materials.emplace_back().normalTexture.image = 0;
+    scene.images = {{"", 1, 1, {128, 255, 128, 255}}};
+    wall.material = 0;
+    finishScene(scene);
+    ASSERT_EQ(wall.tangents.size(), 4u);
+    for (const glm::vec4& tangent : wall.tangents)
+        EXPECT_EQ(glm::cross(wall.normals[0], glm::vec3(tangent)) * tangent.w, glm::vec3(0, 1, 0));
 }
 
 TEST(FinishScene, MirroredTexturesGiveTheOtherHandedness) {
     Scene scene = boxScene();
     Primitive& quad = scene.meshes[0].primitives[0];
     quad.texCoords.clear();
-    for (const glm::vec3& position : quad.positions) quad.texCoords.emplace_back(-position.x, position.y);
+    for (const glm::vec3& position : quad.positions) quad.texCoords.emplace_back(-position.x, -position.y);
     scene.materials.emplace_back().normalTexture.image = 0;
     scene.images = {{"", 1, 1, {1, 2, 3, 4}}};
     quad.material = 0;
