@@ -2,10 +2,14 @@
 #include "measure/sweep_manifest.h"
 #include "core/files.h"
 #include "core/hash.h"
+#include "graph/graph.h"
+#include "image/io.h"
+#include "scene/builtin.h"
 #include "scene/gltf_container.h"
 #include "scene/setup_keys.h"
 #include <algorithm>
 #include <fmt/format.h>
+#include <set>
 
 namespace kestrel {
 namespace {
@@ -49,6 +53,41 @@ std::optional<std::string> sceneContent(const Sweep& sweep, const SweepScene& sc
     return contentText(hash);
 }
 
+// Files by the names that they were given, each with what it holds.
+void addFile(FactJson& files, const std::string& name, const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored)) files[name] = contentOf(file);
+}
+
+// What a graph with its settings names besides itself: the path of its camera, and pictures. Which property
+// is a file's name only its pass knows (beside the scene's file, or in the working folder); a text that is
+// the name of a file there is taken for one.
+FactJson filesNamed(const Sweep& sweep, const std::filesystem::path& graphFile,
+                    const std::vector<SweepSetting>& settings) {
+    FactJson files = FactJson::object();
+    std::vector<std::string> texts;
+    try {
+        const Graph graph = loadGraph(graphFile);
+        if (graph.sceneSetup.camera && !graph.sceneSetup.camera->path.empty())
+            addFile(files, graph.sceneSetup.camera->path,
+                    located(graph.sceneSetup, graphFile.parent_path()).camera->path);
+        for (const GraphPass& pass : graph.passes)
+            for (const auto& [name, value] : pass.properties)
+                if (const auto* text = std::get_if<std::string>(&value)) texts.push_back(*text);
+    } catch (const InputError&) { // checkSweep() tells it
+    }
+    for (const SweepSetting& setting : settings)
+        if (const size_t at = setting.text.find('='); at != std::string::npos)
+            texts.push_back(setting.text.substr(at + 1));
+    std::set<std::filesystem::path> folders;
+    for (const SweepScene& scene : sweep.scenes)
+        folders.insert(isBuiltin(scene.source) ? "." : sweepSceneFile(sweep, scene).parent_path());
+    for (const std::string& text : texts)
+        for (const std::filesystem::path& folder : folders)
+            if (!text.empty()) addFile(files, text, imageName(folder / text).file);
+    return files;
+}
+
 FactJson settingTexts(const std::vector<SweepSetting>& settings) {
     FactJson texts = FactJson::array();
     for (const SweepSetting& setting : settings) texts.push_back(setting.text);
@@ -59,6 +98,7 @@ FactJson settingTexts(const std::vector<SweepSetting>& settings) {
 FactJson graphFacts(const Sweep& sweep, const std::string& graph, const std::vector<SweepSetting>& settings) {
     return {{"graph", graph},
             {"content", contentOf(sweepGraphFile(sweep, graph))},
+            {"files", filesNamed(sweep, sweepGraphFile(sweep, graph), settings)},
             {"set", settingTexts(settings)}};
 }
 
@@ -82,7 +122,12 @@ void compareFacts(const std::string& kind, const FactJson& held, const FactJson&
     for (const auto& [key, value] : now.items()) {
         const auto before = held.find(key);
         if (before == held.end() || *before == value || key == "graph") continue;
-        if (key == "content" && now.contains("graph"))
+        if (key == "files") {
+            for (const auto& [file, content] : value.items())
+                if (before->contains(file) && (*before)[file] != content)
+                    note(fmt::format("the file '{}' that the graph {} names has changed", file,
+                                     shown(now["graph"])));
+        } else if (key == "content" && now.contains("graph"))
             note(fmt::format("the text of the graph {} has changed", shown(now["graph"])));
         else if (key == "content")
             note(fmt::format("the scene {} has changed", shown(now["name"])));
@@ -151,6 +196,7 @@ SweepManifest::SweepManifest(const Sweep& sweep, std::string machine)
                           {"graph", point.graph},
                           {"content", content},
                           {"output", point.output.text()},
+                          {"files", filesNamed(sweep, sweepGraphFile(sweep, point.graph), point.settings)},
                           {"set", settingTexts(point.settings)}};
         // A variant's own number of frames; the sweep's and the rays' stand there.
         const bool own = !point.ray && point.frames != sweep.frames;

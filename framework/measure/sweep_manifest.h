@@ -5,7 +5,8 @@
 
 namespace kestrel {
 
-// Graphs and scenes count by their content, wherever they lie; what only names or shows a result (titles,
+// Graphs, scenes and the files that either names (buffers, images, paths of cameras, pictures of the
+// surroundings) count by their content, wherever they lie; what only names or shows a result (titles,
 // times, series) and how often it is repeated do not count.
 class SweepManifest {
 public:

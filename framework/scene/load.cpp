@@ -37,7 +37,8 @@ Scene loadScene(const std::string& source, const std::filesystem::path& folder, 
         if (ending != ".gltf" && ending != ".glb") failUnknown(source);
         scene = importGltf(path, options);
     }
-    scene.source = source;
+    // That of a file says where it was found: what is named beside the scene lies there.
+    if (isBuiltin(source)) scene.source = source;
     setUpScene(scene, setup, folder);
     return scene;
 }

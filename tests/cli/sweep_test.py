@@ -271,6 +271,47 @@ def test_names_graphs_and_scenes_wherever_they_lie():
         assert "there is no scene file" in text and not (here / "new").exists(), text
 
 
+def test_files_that_graphs_name_count_by_what_they_hold():
+    need_part("embree")
+    with folder() as here:
+        here = Path(here)
+        path = {"kestrel_camera": 1, "target": [0, 1, 0], "keys": [{"time": 0, "eye": [4, 2, 4]}]}
+        graph = json.loads((SOURCE / "graphs" / "direct_light.json").read_text())
+        for part in ["graphs", "data"]:
+            (here / part).mkdir()
+        done("scene", "export", "builtin:lattice?detail=0.02", here / "data" / "still.glb")
+        orbit, sky, other = here / "graphs" / "orbit.json", here / "data" / "sky.hdr", here / "data" / "other.hdr"
+        pixel = lambda value: b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + bytes([value, value, value, 129])
+        orbit.write_text(json.dumps(path))
+        sky.write_bytes(pixel(100))
+        other.write_bytes(pixel(50))
+        graph["scene"] = {"source": "builtin:lattice", "camera": {"path": "orbit.json"}}
+        graph["passes"]["sky"]["properties"] = {"kind": "picture", "file": "sky.hdr"}
+        (here / "graphs" / "own.json").write_text(json.dumps(graph))
+        variant = {"name": "lit", "graph": "graphs/own.json", "output": "tone.image"}
+        file = tiny(here, repeats=1, scenes=["data/still.glb"], reference={"graph": "graphs/own.json", "output": "tone.image"},
+                    rays=None, variants=[variant, {**variant, "name": "other sky", "set": ["sky.file=other.hdr"]}])
+        sweep = json.loads(file.read_text())
+        del sweep["rays"]
+        file.write_text(json.dumps(sweep))
+        done("sweep", file, "--out", here / "out")
+        done("sweep", file, "--out", here / "out", "--resume")
+
+        def told():
+            return "\n".join(refused("sweep", file, "--out", here / "out", "--resume"))
+
+        orbit.write_text(json.dumps({**path, "fov": 30}))
+        assert "the file 'orbit.json' that the graph 'graphs/own.json' names has changed" in told(), told()
+        orbit.write_text(json.dumps(path))
+        sky.write_bytes(pixel(101))
+        assert "the file 'sky.hdr' that" in told() and "orbit" not in told(), told()
+        sky.write_bytes(pixel(100))
+        other.write_bytes(pixel(51))
+        assert "the file 'other.hdr' that" in told() and "sky.hdr" not in told(), told()
+        other.write_bytes(pixel(50))
+        done("sweep", file, "--out", here / "out", "--resume")
+
+
 def test_one_variant_first_and_the_rest_later():
     need_part("embree")
     with folder() as here:
