@@ -37,6 +37,10 @@ LightFaces lightFacesOver(const LightState& light, const Sphere& scene) {
     // Depth is one over the distance, in float: a near plane costs no precision far away, so it can be so
     // near that a wide scene takes nothing from what stands beside a lamp (a millimetre of 100 km).
     faces.nearPlane = 1e-8f * radius;
+    // A panel that glows in a rectangle's place casts no shadow of it, also where rounding has moved it a
+    // little to the front.
+    if (light.kind == LightKind::Rectangle)
+        faces.nearPlane = std::max(faces.nearPlane, 1e-3f * std::max(light.halfSize.x, light.halfSize.y));
     if (light.kind == LightKind::Sphere) faces.nearPlane = std::max(faces.nearPlane, light.halfSize.x);
     if (lightFaces(light) == 1) faces.halfWidth = std::tan(std::clamp(light.outerCone, 1e-3f, wideSpotCone));
     return faces;

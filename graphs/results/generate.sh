@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes graphs/results/README.md of head.md, the tables of every NAME.json beside it, and by_hand.md.
+# Makes graphs/results/README.md of head.md, truth.md, the tables of every NAME.json beside it, and by_hand.md.
 #
 #   graphs/results/generate.sh [FOLDER...]     takes the results.json of these folders of sweeps in first
 #   graphs/results/generate.sh --check         changes nothing; 1 if the page is not what it would write
@@ -12,6 +12,8 @@ kestrel=${KESTREL:-$here/../../build/bin/kestrel}
 
 page() {
     cat "$here/head.md"
+    echo
+    cat "$here/truth.md"
     for file in "$here"/*.json; do
         [ -e "$file" ] || continue
         echo

@@ -1,4 +1,5 @@
 #include "direct_light.h"
+#include "draw/face_input.h"
 #include "draw/no_light.h"
 #include <algorithm>
 
@@ -23,12 +24,8 @@ void noteLeftOutKinds(const SceneFacts& facts, std::vector<LeftOut>& leftOut) {
 } // namespace
 
 PassType DirectLight::type() {
-    return Describe<DirectLight>("DirectLight", "Light straight from the scene's lights, through shadow maps")
-        .input("depth", PortKind::Texture, "Reversed depth of the surfaces")
-        .carries(content::depth)
-        .input("normal", PortKind::Texture, "Their normals, unit, render space")
-        .carries(content::normal)
-        .sameExtentAs("depth")
+    Describe<DirectLight> table("DirectLight", "Light straight from the scene's lights, through shadow maps");
+    return addSurface(table)
         .optionalInput("albedo", PortKind::Texture, "Their linear base colour, for specular")
         .carries(content::colour)
         .sameExtentAs("depth")
@@ -62,8 +59,9 @@ PassType DirectLight::type() {
               "Rectangles and spheres too (shadowed from their middle); off where another pass samples them");
 }
 
-LightMapLayout DirectLight::layout(const SceneFacts& facts) const {
-    return lightMapLayout(facts, {true, true, true, areaLights, areaLights}, shadows && facts.triangles > 0);
+LightMapLayout DirectLight::layout(const SceneFacts& facts, std::uint32_t nested) const {
+    return lightMapLayout(facts, {true, true, true, areaLights, areaLights}, shadows && facts.triangles > 0,
+                          nested);
 }
 
 Defines DirectLight::lightDefines(const LightMapLayout& maps) const {
@@ -77,13 +75,14 @@ Defines DirectLight::lightDefines(const LightMapLayout& maps) const {
 
 Declaration DirectLight::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
     Declaration declaration;
-    const LightMapLayout maps = layout(world.facts);
+    // How many smaller maps a sun needs is known when a frame's camera is.
+    const LightMapLayout maps = layout(world.facts, static_cast<std::uint32_t>(demand.grown("maps")));
     const bool dark = maps.lights() == 0;
     if (!dark) {
         declaration.leftOut = lightMapShortage(maps, resolution, texelBytes);
         declaration.outputs.push_back({.port = "maps", .desc = Desc::buffer(maps.blockBytes())});
         declaration.steps.push_back({.name = "views",
-                                     .run = &DirectLight::uploadViews,
+                                     .run = {&DirectLight::uploadViews, maps},
                                      .uses = {{.port = "maps", .access = Access::Copy, .write = true}},
                                      .group = "generation"});
     }
@@ -119,6 +118,8 @@ Declaration DirectLight::declare(const World& world, const Inputs& inputs, const
             {"shadow maps", world.facts.triangles == 0 ? "the scene has no triangle" : "shadows are off"});
     declaration.depends = Causes::Lights | Causes::Properties;
     if (mapped) declaration.depends |= Causes::Geometry | Causes::Transforms;
+    if (mapped && world.facts.directionalLights > 0) declaration.depends |= Causes::Cut;
+    if (mapped && maps.nested > 0) declaration.depends |= Causes::Camera;
     if (mapped && world.facts.hasMasked) declaration.depends |= Causes::Materials;
     return declaration;
 }
@@ -163,6 +164,7 @@ void DirectLight::declareShading(const World& world, const Inputs& inputs, const
         declaration.leftOut.push_back({"specular", "albedo or material is not connected"});
     }
     if (!shade.defines.contains("OUT_RESULT") && !shade.defines.contains("OUT_SPECULAR")) return;
+    useFaceNormal(declaration, shade, inputs);
     shade.uses.push_back(shadowedLights[0]);
     if (maps.mapped) shade.uses.push_back(shadowedLights[1]);
     declaration.steps.push_back(std::move(shade));
@@ -184,8 +186,9 @@ void DirectLight::declareModule(const World& world, const LightMapLayout& maps,
         declaration.leftOut.push_back({"emission", "no material emits light"});
 }
 
-void DirectLight::uploadViews(Commands& commands) {
-    const LightMapLayout maps = layout(commands.facts());
+void DirectLight::uploadViews(Commands& commands, const LightMapLayout& maps) {
+    const std::uint32_t nested = maps.mapped ? nestedMaps(commands.facts(), commands.frame().cameraState) : 0;
+    if (nested > maps.nested) return commands.overflow("maps", nested);
     warnOfShortage(lightMapShortage(maps, resolution, texelBytes), told_);
     commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts().sphere,
                                           lightMapResolution(maps, resolution, texelBytes), bias, {},

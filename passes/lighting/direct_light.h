@@ -24,8 +24,8 @@ public:
     bool areaLights = true;
 
 private:
-    void uploadViews(Commands& commands);
-    [[nodiscard]] LightMapLayout layout(const SceneFacts& facts) const;
+    void uploadViews(Commands& commands, const LightMapLayout& maps);
+    [[nodiscard]] LightMapLayout layout(const SceneFacts& facts, std::uint32_t nested) const;
     [[nodiscard]] Defines lightDefines(const LightMapLayout& maps) const;
     void declareShading(const World& world, const Inputs& inputs, const Demand& demand,
                         const LightMapLayout& maps, Declaration& declaration) const;

@@ -70,7 +70,32 @@ LightMap mapOf(const LightState& light, const Sphere& scene, int resolution) {
     map.faces = lightFaces(light);
     map.nearPlane = faces.nearPlane;
     map.halfWidth = faces.halfWidth * guarded;
-    if (map.faces == 0) map.inverseRange = 1 / faces.farPlane;
+    if (map.faces == 0) {
+        map.inverseRange = 1 / faces.farPlane;
+        map.farEnd = faces.farPlane;
+    }
+    return map;
+}
+
+// Smaller map `i` of `count` from small to large, within `whole`: a cube about what the camera sees, more of
+// it ahead of the eye than behind. It moves by whole texels, so that its shadows stand still. What comes
+// between the cube and the light is in it too: rays start where those of the whole map do.
+LightMap nestedMapOf(LightMap whole, std::uint32_t i, std::uint32_t count, const CameraState& camera,
+                     const Sphere& scene, int resolution) {
+    const float smallest = nestedMapReach * std::max(camera.nearPlane, 1e-7f * scene.radius);
+    const float growth = std::pow(std::max(1.0f, scene.radius / smallest), 1 / static_cast<float>(count));
+    const float half = smallest * std::pow(growth, static_cast<float>(i));
+    const glm::vec3 ahead = -glm::vec3(camera.view[0][2], camera.view[1][2], camera.view[2][2]);
+    const glm::vec3 middle = camera.position + 0.8f * half * ahead;
+    const float texel = 2 * half / static_cast<float>(resolution);
+    LightMap map = whole;
+    map.origin = glm::vec3(0);
+    for (const glm::vec3& axis : {whole.axisX, whole.axisY, whole.axisZ})
+        map.origin += texel * std::round(glm::dot(axis, middle) / texel) * axis;
+    map.halfWidth = half;
+    map.farEnd = half;
+    const float start = std::min(-half, glm::dot(whole.axisZ, whole.origin - map.origin));
+    map.inverseRange = 1 / (half - start);
     return map;
 }
 
@@ -102,8 +127,9 @@ std::vector<size_t> chosenLights(LightKind kind, std::uint32_t count, const std:
 
 // What lies where: slots in the order of kinds, layers one after another.
 struct PlacedMap {
-    size_t light; // index into the frame's lights
-    std::uint32_t slot, firstLayer, faces;
+    size_t light;                          // index into the frame's lights
+    std::uint32_t slot, firstLayer, faces; // a nested map has a slot behind those of the lights
+    std::optional<std::uint32_t> nested;   // which one it is
 };
 std::vector<PlacedMap> placedMaps(const LightMapLayout& layout, const std::vector<LightState>& lights,
                                   const Sphere& scene) {
@@ -112,9 +138,17 @@ std::vector<PlacedMap> placedMaps(const LightMapLayout& layout, const std::vecto
     for (const LightKind kind : allKinds) {
         std::uint32_t slot = layout.firstSlot(kind);
         for (const size_t i : chosenLights(kind, layout.counts[indexOf(kind)], lights, scene)) {
-            placed.push_back({i, slot++, layer, lightFaces(lights[i])});
+            placed.push_back({i, slot++, layer, lightFaces(lights[i]), {}});
             layer += std::max(1u, placed.back().faces);
         }
+    }
+    const std::uint32_t first = layout.firstSlot(LightKind::Directional);
+    for (size_t whole = 0, all = placed.size(); whole < all && layout.nested > 0; ++whole) {
+        if (lights[placed[whole].light].kind != LightKind::Directional) continue;
+        for (std::uint32_t i = 0; i < layout.nested; ++i)
+            placed.push_back({placed[whole].light,
+                              layout.allSlots() + (placed[whole].slot - first) * layout.nested + i, layer++,
+                              0, i});
     }
     KESTREL_CHECK(!layout.mapped || layer <= layout.layers);
     return placed;
@@ -143,6 +177,10 @@ std::uint32_t LightMapLayout::lights() const { return std::accumulate(counts.beg
 
 std::uint32_t LightMapLayout::allSlots() const { return std::accumulate(slots.begin(), slots.end(), 0u); }
 
+std::uint32_t LightMapLayout::allMaps() const {
+    return allSlots() + nested * slots[indexOf(LightKind::Directional)];
+}
+
 std::uint32_t LightMapLayout::firstSlot(LightKind kind) const {
     return std::accumulate(slots.begin(), slots.begin() + static_cast<std::ptrdiff_t>(indexOf(kind)), 0u);
 }
@@ -153,15 +191,28 @@ Defines LightMapLayout::defines() const {
     Defines result;
     for (size_t i = 0; i < names.size(); ++i) result.emplace(names[i], std::to_string(slots[i]));
     result.emplace("LIGHTS", std::to_string(allSlots()));
+    result.emplace("MAPS", std::to_string(allMaps()));
+    result.emplace("NESTED_MAPS", std::to_string(nested));
     if (wideSpots) result.emplace("WIDE_SPOTS", "1");
     return result;
 }
 
 std::uint64_t LightMapLayout::blockBytes() const {
-    return sizeof(LightMapCounts) + std::uint64_t{allSlots()} * (sizeof(LightMap) + sizeof(LightRecord));
+    return sizeof(LightMapCounts) + std::uint64_t{allMaps()} * sizeof(LightMap) +
+           std::uint64_t{allSlots()} * sizeof(LightRecord);
 }
 
-LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, bool mapped) {
+std::uint32_t nestedMaps(const SceneFacts& facts, const CameraState& camera) {
+    const float smallest = nestedMapReach * camera.nearPlane;
+    if (facts.directionalLights == 0 || facts.directionalLights > maxNestedLights || camera.orthographic ||
+        !(smallest > 0) || !(facts.sphere.radius > 16 * smallest))
+        return 0;
+    const float fours = std::ceil(std::log2(facts.sphere.radius / smallest) / 2);
+    return std::min(maxNestedMaps, static_cast<std::uint32_t>(fours));
+}
+
+LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, bool mapped,
+                              std::uint32_t nested) {
     LightMapLayout layout;
     layout.mapped = mapped;
     for (const LightKind kind : allKinds)
@@ -177,6 +228,8 @@ LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, 
 
     constexpr std::array<std::uint32_t, 5> faces = {6, 1, 1, 5, 6}; // of most lights of a kind
     for (size_t i = 0; i < faces.size(); ++i) layout.layers += layout.counts[i] * faces[i];
+    if (layout.counts[indexOf(LightKind::Directional)] > 0) layout.nested = nested;
+    layout.layers += layout.nested * layout.counts[indexOf(LightKind::Directional)];
     // Which of the spot lights are chosen is known only in the frame.
     const std::uint32_t wide = std::min(facts.wideSpotLights, layout.counts[indexOf(LightKind::Spot)]);
     layout.wideSpots = wide > 0;
@@ -222,14 +275,16 @@ std::vector<std::byte> lightMapBlock(const LightMapLayout& layout, const std::ve
                                      const LightMapJitter& jitter, const FrameInfo& frame) {
     const LightMapCounts counts{
         layout.counts[0], layout.counts[1], layout.counts[2], layout.counts[3], layout.counts[4], bias, 0, 0};
-    std::vector<LightMap> maps(layout.allSlots());
+    std::vector<LightMap> maps(layout.allMaps());
     std::vector<LightRecord> records(layout.allSlots());
     for (const PlacedMap& placed : placedMaps(layout, lights, scene)) {
         LightMap map = mapOf(lights[placed.light], scene, resolution);
         displace(map, static_cast<std::uint32_t>(placed.light), jitter, scene.radius, resolution, frame);
+        if (placed.nested)
+            map = nestedMapOf(map, *placed.nested, layout.nested, frame.cameraState, scene, resolution);
         map.firstLayer = placed.firstLayer;
         maps[placed.slot] = map;
-        records[placed.slot] = recordOf(lights[placed.light]);
+        if (!placed.nested) records[placed.slot] = recordOf(lights[placed.light]);
     }
     std::vector<std::byte> block(layout.blockBytes());
     std::byte* at = block.data();

@@ -23,19 +23,32 @@ struct LightMapLayout {
     std::uint32_t layers = 0;              // of the map arrays
     bool mapped = true;                    // false: lights without maps
     bool wideSpots = false;                // some spot light's map may have several faces
+    std::uint32_t nested = 0;              // smaller maps of each directional light
     std::uint32_t leftOut = 0;             // lights for which there is no place
 
     [[nodiscard]] std::uint32_t lights() const;
     [[nodiscard]] std::uint32_t allSlots() const;
+    [[nodiscard]] std::uint32_t allMaps() const; // a slot each, and the nested ones
     [[nodiscard]] std::uint32_t firstSlot(LightKind kind) const;
     // POINT_LIGHTS, SPOT_LIGHTS, DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, SPHERE_LIGHTS: slots; LIGHTS: all of
-    // them; WIDE_SPOTS where there may be some.
+    // them; MAPS: allMaps(); NESTED_MAPS; WIDE_SPOTS where there may be some.
     [[nodiscard]] Defines defines() const;
     [[nodiscard]] std::uint64_t blockBytes() const;
 };
 
-// The scene's lights of `kinds`; `mapped` false: none of them gets a layer.
-LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, bool mapped);
+// The scene's lights of `kinds`; `mapped` false: none of them gets a layer. Directional lights get `nested`
+// smaller maps each.
+LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, bool mapped,
+                              std::uint32_t nested = 0);
+
+// A directional light's map covers the whole scene. Where that is far larger than what a camera sees from
+// near, its texels are too: smaller maps lie about what the camera sees, each four times as wide as the one
+// within (or more, where maxNestedMaps are not enough), the smallest as wide as the camera sees at
+// nestedMapReach near planes. How many this camera asks for: none where the scene's radius is below 16 of
+// those reaches, with an orthographic camera, or with more than maxNestedLights directional lights.
+inline constexpr std::uint32_t maxNestedMaps = 7, maxNestedLights = 4;
+inline constexpr float nestedMapReach = 64;
+std::uint32_t nestedMaps(const SceneFacts& facts, const CameraState& camera);
 
 // What a block holds: 192 bytes a light, of the 16 KiB that every device allows.
 inline constexpr std::uint32_t maxLights = 64;

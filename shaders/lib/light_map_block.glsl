@@ -4,7 +4,7 @@
 
 layout(std140) uniform Maps {
     LightMapCounts light_map_counts;
-    LightMap light_maps[LIGHTS];
+    LightMap light_maps[MAPS];
     LightRecord light_map_lights[LIGHTS];
 };
 

@@ -9,7 +9,8 @@
 // face's plane, is exactly what keeps a plane from shadowing itself, at any tilt. What is left is rounding.
 #include "lib/light_maps.glsl"
 
-const float shadowRounding = 2e-6; // of a depth, relative for perspective maps
+const float shadowRounding = 2e-6; // of a depth of perspective maps, of the width of parallel ones
+const float shadowReach = 1.5e-7;  // of the way that parallel rays come: what float leaves of a triangle as long as that
 
 // Whether something stands before the depth.
 float shadowTap(sampler2DArray shadowMaps, ivec2 texel, int layer, int last, float depth) {
@@ -26,7 +27,8 @@ float shadowVisibility(sampler2DArray shadowMaps, LightMap map, vec3 position, v
     vec2 slope = lightMapTurned(lightMapLocal(map.axisX, map.axisY, map.axisZ, n), face).xy;
     float reach = taps == 1 ? 0.71 : taps == 2 ? 1.42 : 2.83;
     place = lightMapPlace(map, position + n * (bias * reach * place.footprint * length(slope)), resolution);
-    float depth = place.depth + shadowRounding * (map.faces == 0u ? 1.0 : place.depth);
+    float depth = place.depth + (map.faces == 0u ? max(shadowReach, 2.0 * shadowRounding * map.halfWidth * map.inverseRange)
+                                                 : shadowRounding * place.depth);
     // Summed is what is blocked: the weights' rounding does not darken what is lit.
     float blocked = 0.0;
     if (taps == 1) {

@@ -1,6 +1,7 @@
 // The scene's lights at the frame's time, and what they send to a point, visibility left out. Everything is linear and in
 // render space. Units: candela (point, spot) and lux (directional) as KHR_lights_punctual has them, radiance of the
 // surface for the area kinds; irradiance comes out in the unit that radiance times steradian has.
+#include "shared/ray.h"
 #include "shared/scene.h"
 
 layout(std430) readonly buffer Lights {
@@ -71,10 +72,10 @@ float edgeIntegral(vec3 a, vec3 b, vec3 n) {
     return sine > 0.0 ? angle / sine * dot(across, n) : 0.0;
 }
 
-// The term of the part above the horizon of n, and where the edge goes through the horizon, if it does.
-float clippedEdgeIntegral(vec3 a, vec3 b, vec3 n, inout vec3 leaving, inout vec3 entering) {
-    float ha = dot(a, n);
-    float hb = dot(b, n);
+// The term of the part above the plane of unit normal h, along n, and where the edge goes through the plane, if it does.
+float clippedEdgeIntegral(vec3 a, vec3 b, vec3 n, vec3 h, inout vec3 leaving, inout vec3 entering) {
+    float ha = dot(a, h);
+    float hb = dot(b, h);
     bool crosses = (ha > 0.0) != (hb > 0.0);
     vec3 crossing = mix(a, b, crosses ? clamp(ha / (ha - hb), 0.0, 1.0) : 0.0);
     if (crosses && ha > 0.0) leaving = crossing;
@@ -85,9 +86,12 @@ float clippedEdgeIntegral(vec3 a, vec3 b, vec3 n, inout vec3 leaving, inout vec3
     return above ? edgeIntegral(from, to, n) : 0.0;
 }
 
-// Irradiance at `position` with unit normal n from a whole rectangle: Lambert's formula for a polygon, clipped at the
-// horizon (Baum et al., "Improving Radiosity Solutions Through the Use of Analytically Determined Form-Factors", 1989).
-vec3 rectangleLight(LightRecord light, vec3 position, vec3 n) {
+// Irradiance at `position` with unit normal n, on a face of unit normal `face`, from a whole rectangle: Lambert's formula
+// for a polygon, clipped at the horizon (Baum et al., "Improving Radiosity Solutions Through the Use of Analytically
+// Determined Form-Factors", 1989). Nothing arrives from below the face, nor from below the horizon of n: the part above the
+// face is what is seen along n if the face's plane cuts the rectangle, else the part above the horizon of n. Where both cut
+// it, what lies between the two horizons is taken off, not left out.
+vec3 rectangleLight(LightRecord light, vec3 position, vec3 n, vec3 face) {
     vec3 centre = light.position - position;
     float ahead = -dot(centre, light.direction);
     // In units of the distance, so that no scale leaves the range of float.
@@ -102,37 +106,43 @@ vec3 rectangleLight(LightRecord light, vec3 position, vec3 n) {
     if (r2 < 1e-3 * d2) {
         // Far away the formula cancels, and the rectangle is as good as its middle (error about r2 / d2).
         float area = 4.0 * length(x) * length(y);
-        factor = max(0.0, dot(centre, n)) * (ahead / size) * area / (d2 * d2);
+        factor = leavesFace(centre * inversesqrt(d2), face) ? dot(centre, n) * (ahead / size) * area / (d2 * d2) : 0.0;
     } else {
         vec3 a = centre - x - y;
         vec3 b = centre + x - y;
         vec3 c = centre + x + y;
         vec3 d = centre - x + y;
-        vec3 leaving = n, entering = n;
-        float sum = clippedEdgeIntegral(a, b, n, leaving, entering) + clippedEdgeIntegral(b, c, n, leaving, entering) +
-                    clippedEdgeIntegral(c, d, n, leaving, entering) + clippedEdgeIntegral(d, a, n, leaving, entering);
+        vec3 h = dot(centre, face) - abs(dot(x, face)) - abs(dot(y, face)) >= 0.0 ? n : face;
+        vec3 leaving = h, entering = h;
+        float sum = clippedEdgeIntegral(a, b, n, h, leaving, entering) + clippedEdgeIntegral(b, c, n, h, leaving, entering) +
+                    clippedEdgeIntegral(c, d, n, h, leaving, entering) + clippedEdgeIntegral(d, a, n, h, leaving, entering);
         // What the horizon cuts off is replaced by an edge along it.
         sum += edgeIntegral(leaving, entering, n);
-        factor = 0.5 * abs(sum);
+        // The corners go around counterclockwise about the way to the light, unless its axes are mirrored.
+        factor = dot(cross(x, y), light.direction) > 0.0 ? -0.5 * sum : 0.5 * sum;
     }
-    return min(light.intensity * factor, vec3(lightMaximum));
+    return min(light.intensity * max(factor, 0.0), vec3(lightMaximum));
 }
 
-// Irradiance at `position` with unit normal n from a whole sphere, also where it stands partly below the horizon (Snyder,
-// "Area Light Sources for Real-Time Graphics", 1996). Nothing arrives inside of it.
-vec3 sphereLight(LightRecord light, vec3 position, vec3 n) {
+// The same from a whole sphere, also where it stands partly below the horizon (Snyder, "Area Light Sources for Real-Time
+// Graphics", 1996): half the integral around the part above, which consists of an arc of the sphere's outline and one of the
+// horizon. Nothing arrives inside of it.
+vec3 sphereLight(LightRecord light, vec3 position, vec3 n, vec3 face) {
     const float quarter = 1.57079632679490; // pi / 2
     vec3 centre = light.position - position;
     vec3 extent = abs(centre);
     float largest = max(extent.x, max(extent.y, extent.z));
     if (!(largest > 0.0)) return vec3(0.0);
-    float d = length(centre / largest);
+    vec3 toCentre = centre / largest;
+    float d = length(toCentre);
+    toCentre /= d;
     float sine = light.halfSize.x / largest / d; // of half the angle that the sphere fills
-    float c = clamp(dot(centre / largest, n) / d, -1.0, 1.0);
     if (sine >= 1.0) return vec3(0.0);
+    vec3 h = dot(toCentre, face) >= sine ? n : face; // as for a rectangle
+    float c = clamp(dot(toCentre, h), -1.0, 1.0);
     float factor;
     if (c >= sine) {
-        factor = 2.0 * quarter * sine * sine * c;
+        factor = 2.0 * quarter * sine * sine * dot(toCentre, n);
     } else if (c <= -sine) {
         factor = 0.0;
     } else {
@@ -140,17 +150,21 @@ vec3 sphereLight(LightRecord light, vec3 position, vec3 n) {
         float cotangent = sqrt(1.0 - sine * sine) / sine;
         float y = clamp(-cotangent * c / s, -1.0, 1.0);
         float root = s * sqrt(1.0 - y * y);
-        factor = (c * acos(y) - cotangent * root) * sine * sine + atan(root, cotangent);
+        float beyond = atan(root, cotangent); // half the arc of the horizon
+        // Along h, and the cosine of what is perpendicular to it.
+        float across = (dot(toCentre, n) - c * dot(h, n)) / s;
+        factor = dot(h, n) * ((c * acos(y) - cotangent * root) * sine * sine + beyond) +
+                 across * (s * acos(y) + cotangent * c * sqrt(1.0 - y * y)) * sine * sine;
     }
     return min(light.intensity * max(factor, 0.0), vec3(lightMaximum));
 }
 
-// Irradiance from a light of any kind at `position` with unit normal n, nothing in between.
-vec3 lightIrradiance(LightRecord light, vec3 position, vec3 n) {
-    if (light.kind == lightKindRectangle) return rectangleLight(light, position, n);
-    if (light.kind == lightKindSphere) return sphereLight(light, position, n);
+// Irradiance from a light of any kind at `position` with unit normal n on a face of unit normal `face`, nothing in between.
+vec3 lightIrradiance(LightRecord light, vec3 position, vec3 n, vec3 face) {
+    if (light.kind == lightKindRectangle) return rectangleLight(light, position, n, face);
+    if (light.kind == lightKindSphere) return sphereLight(light, position, n, face);
     vec3 toLight;
     float distanceToLight;
     vec3 facing = punctualLight(light, position, toLight, distanceToLight);
-    return facing * max(0.0, dot(n, toLight));
+    return leavesFace(toLight, face) ? facing * max(0.0, dot(n, toLight)) : vec3(0.0);
 }

@@ -4,6 +4,7 @@
 #include "lib/light_shadow.glsl"
 #include "lib/sampling.glsl"
 #include "lib/view.glsl"
+#include "lib/face.glsl"
 #ifdef OUT_SPECULAR
 #include "lib/light_specular.glsl"
 #endif
@@ -15,7 +16,7 @@ uniform sampler2D normal;
 layout(std140) uniform DepthView { ViewData depthView; };
 layout(std140) uniform Maps {
     LightMapCounts counts;
-    LightMap maps[LIGHTS];
+    LightMap maps[MAPS];
     LightRecord lights[LIGHTS];
 };
 #ifdef SHADOWS
@@ -30,7 +31,7 @@ uniform sampler2D material;
 layout(rgba32f) uniform writeonly image2D specular;
 #endif
 
-vec3 position, n;
+vec3 position, n, face;
 vec3 irradiance = vec3(0.0);
 #ifdef OUT_SPECULAR
 vec3 glossy = vec3(0.0), toEye, f0;
@@ -39,7 +40,8 @@ float alpha;
 
 float visible(uint slot) {
 #ifdef SHADOWS
-    return shadowVisibility(shadow_maps, maps[slot], position, n, counts.bias, SHADOW_TAPS);
+    LIGHT_MAP_OF(map, maps, slot, position)
+    return shadowVisibility(shadow_maps, maps[map], position, n, counts.bias, SHADOW_TAPS);
 #else
     return 1.0;
 #endif
@@ -49,6 +51,7 @@ void addPunctual(uint slot) {
     vec3 toLight;
     float distanceToLight;
     vec3 arriving = punctualLight(lights[slot], position, toLight, distanceToLight) * visible(slot);
+    if (!leavesFace(toLight, face)) return;
     irradiance += arriving * max(0.0, dot(n, toLight));
 #ifdef OUT_SPECULAR
     glossy += arriving * specularLobe(n, toEye, toLight, f0, alpha);
@@ -63,6 +66,7 @@ void main() {
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
     position = positionFromDepth(depthView, vec2(pixel) + 0.5, background ? 1.0 : z);
+    face = faceAt(pixel, n, depthView, position, 0.0).xyz;
 #ifdef OUT_SPECULAR
     vec3 base = texelFetch(albedo, pixel, 0).rgb;
     vec2 surface = texelFetch(material, pixel, 0).rg;
@@ -90,13 +94,13 @@ void main() {
     const uint rectangles = directionals + uint(DIRECTIONAL_LIGHTS);
 #if RECTANGLE_LIGHTS > 0
     EACH_LIGHT(slot, rectangles, RECTANGLE_LIGHTS, counts.rectangles,
-               irradiance += rectangleLight(lights[slot], position, n) * visible(slot);)
+               irradiance += rectangleLight(lights[slot], position, n, face) * visible(slot);)
 #endif
     ITERATIONS_BEGIN;
     const uint spheres = rectangles + uint(RECTANGLE_LIGHTS);
 #if SPHERE_LIGHTS > 0
     EACH_LIGHT(slot, spheres, SPHERE_LIGHTS, counts.spheres,
-               irradiance += sphereLight(lights[slot], position, n) * visible(slot);)
+               irradiance += sphereLight(lights[slot], position, n, face) * visible(slot);)
 #endif
     imageStore(result, pixel, vec4(background ? vec3(0.0) : min(irradiance / pi, vec3(lightMaximum)), 1.0));
 #endif

@@ -5,17 +5,19 @@
 #include "lib/lights.glsl"
 #include "lib/light_shadow.glsl"
 #include "lib/sampling.glsl"
-#include "shared/ray.h"
 
 layout(std140) uniform M(Maps) {
     LightMapCounts M(counts);
-    LightMap M(maps)[LIGHTS];
+    LightMap M(maps)[MAPS];
     LightRecord M(lights)[LIGHTS];
 };
 #ifdef SHADOWS
 uniform sampler2DArray M(shadow_maps);
-#define VISIBLE(slot, at)                                                                                                    \
-    shadowVisibility(M(shadow_maps), M(maps)[slot], at.position, at.normal, M(counts).bias, SHADOW_TAPS)
+float M(visible)(uint slot, Surface at) {
+    LIGHT_MAP_OF(map, M(maps), slot, at.position)
+    return shadowVisibility(M(shadow_maps), M(maps)[map], at.position, at.normal, M(counts).bias, SHADOW_TAPS);
+}
+#define VISIBLE(slot, at) M(visible)(slot, at)
 #else
 #define VISIBLE(slot, at) 1.0
 #endif
@@ -44,12 +46,12 @@ vec3 M(irradiance)(Surface at) {
     const uint rectangles = directionals + uint(DIRECTIONAL_LIGHTS);
 #if RECTANGLE_LIGHTS > 0
     EACH_LIGHT(slot, rectangles, RECTANGLE_LIGHTS, M(counts).rectangles,
-               sum += rectangleLight(M(lights)[slot], at.position, at.shadingNormal) * VISIBLE(slot, at);)
+               sum += rectangleLight(M(lights)[slot], at.position, at.shadingNormal, at.normal) * VISIBLE(slot, at);)
 #endif
     const uint spheres = rectangles + uint(RECTANGLE_LIGHTS);
 #if SPHERE_LIGHTS > 0
     EACH_LIGHT(slot, spheres, SPHERE_LIGHTS, M(counts).spheres,
-               sum += sphereLight(M(lights)[slot], at.position, at.shadingNormal) * VISIBLE(slot, at);)
+               sum += sphereLight(M(lights)[slot], at.position, at.shadingNormal, at.normal) * VISIBLE(slot, at);)
 #endif
     return sum;
 }

@@ -50,7 +50,7 @@ void main() {
     vec3 n = side * materialNormal(material, coords, smoothNormal, tangent);
     MaterialSample point = materialAt(material, coords, colour);
     vec3 albedo = point.baseColour.rgb * (1.0 - point.metallic);
-    vec3 reflected = albedo / pi * lightIrradiance(light, vertex.position, n);
+    vec3 reflected = albedo / pi * lightIrradiance(light, vertex.position, n, side * face);
     out_map_radiance = vec4(min(reflected, vec3(65504.0)), 1.0); // the largest half float, never infinity
 #endif
 #ifdef OUT_NORMAL

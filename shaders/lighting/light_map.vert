@@ -24,6 +24,6 @@ void main() {
     vec3 ahead = lightMapTurned(local, map_face);
     bool parallel = map.faces == 0u;
     float w = parallel ? 1.0 : ahead.z;
-    float depth = parallel ? 1.0 - ahead.z * map.inverseRange : map.nearPlane;
+    float depth = parallel ? (map.farEnd - ahead.z) * map.inverseRange : map.nearPlane;
     gl_Position = vec4(ahead.xy / map.halfWidth + map.jitter * w, depth, w);
 }

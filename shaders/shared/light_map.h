@@ -2,7 +2,8 @@
 //
 // A map has faces in consecutive layers of an array. In the map's axes face 0 looks along +z, then 1 +x, 2 -x, 3 +y, 4 -y,
 // 5 -z: one face serves a spot light, five the half space before a rectangle, six all directions; 0 faces stands for one
-// layer of parallel rays along z.
+// layer of parallel rays along z. Of a directional light there may be further such maps, smaller and smaller, about what a
+// camera sees from near.
 #pragma once
 #include "shared/scene.h"
 
@@ -15,11 +16,11 @@ struct LightMap {
     uint firstLayer;
     vec3 axisZ;
     float nearPlane;    // of perspective faces: nothing nearer is in the map
-    vec3 origin;        // where the rays meet, or the middle of the plane that parallel rays start from
+    vec3 origin;        // where the rays meet, or a point on the middle one of parallel rays
     float halfWidth;    // tangent of half a face's angle, or half a parallel map's width in scene units
     vec2 jitter;        // added to the position on the face in [-1, 1]^2
     float inverseRange; // of parallel rays: one over the distance from depth 1 to depth 0
-    float pad0;
+    float farEnd;       // of parallel rays: where depth is 0, along them from the origin
 };
 
 // How many lights of each kind a block holds, and what lookups need besides.

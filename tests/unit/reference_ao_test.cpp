@@ -10,6 +10,7 @@
 #include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <set>
 
 namespace kestrel {
@@ -128,6 +129,29 @@ TEST(ReferenceAmbientOcclusion, WallBesideAFloorHidesTheKnownShare) {
         EXPECT_NEAR(result.visibility.at(static_cast<int>(i), 0), 1 - hidden, 0.002) << distances[i];
     }
     EXPECT_LT(result.noise, 0.002);
+}
+
+// Within the distance D an endless wall at d hides the directions whose way to it is at most D: those with a
+// component towards it of at least c = d / D, a segment of the disk on which the cosine-weighted hemisphere
+// is uniform: (acos c - c sqrt(1 - c^2)) / pi.
+TEST(ReferenceAmbientOcclusion, WithinADistanceAWallHidesASegmentOfTheDisk) {
+    NEEDS_EMBREE();
+    Geometry g;
+    addQuad(g, {-50, 0, -50}, {0, 0, 100}, {100, 0, 0});
+    addQuad(g, {0, 0, -50}, {0, 50, 0}, {0, 0, 100});
+    const ReferenceTracer tracer(g, Scene{});
+    OcclusionSettings settings;
+    settings.samples = 1 << 14;
+    settings.relativeOffset = 1e-7f;
+    settings.maximumDistance = 2;
+    std::vector<glm::vec3> on;
+    for (int i = 0; i < 12; ++i) on.emplace_back(0.01f + 0.2f * static_cast<float>(i), 0, 0);
+    const auto result = ambientOcclusion(tracer, points(on, {0, 1, 0}), settings);
+    for (size_t i = 0; i < on.size(); ++i) {
+        const double c = std::min(1.0, double{on[i].x} / 2);
+        const double hidden = (std::acos(c) - c * std::sqrt(1 - c * c)) / std::numbers::pi;
+        EXPECT_NEAR(result.visibility.at(static_cast<int>(i), 0), 1 - hidden, 0.002) << on[i].x;
+    }
 }
 
 TEST(ReferenceAmbientOcclusion, DirectionsBelowTheFaceAreOccluded) {

@@ -303,6 +303,39 @@ TEST(ReferenceIndirectDiffuse, TheSunOnAFloorSeenFromAbove) {
     EXPECT_NEAR(result.light.at(0, 0, 0), 0.8f / pi * 5 * std::sqrt(0.5f), 1e-3f);
 }
 
+// One patch lights another: a square under a lamp, and a point that faces askew, by a sum over the square.
+TEST(ReferenceIndirectDiffuse, ALampOverASquareIsItsIntegralElsewhere) {
+    GATHER_NEEDS_EMBREE();
+    LitWorld world;
+    world.scene = materialsScene({matteOf({0.8f, 0.4f, 0.2f})});
+    addSquare(world.geometry, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+    const LightState lamp = lightOf(LightKind::Point, {0.3f, 0.7f, -0.2f}, 5);
+    world.lights = {lamp};
+    GatherSettings settings;
+    settings.samples = 1 << 15;
+    const glm::vec3 normal = glm::normalize(glm::vec3(-0.6f, -0.8f, 0.1f));
+    const std::vector<glm::vec3> points = {{0.5f, 0.5f, 0}, {1.5f, 1, 0.4f}, {0, 2, -1}};
+    const GatherResult result = world.bounce(pointsFacing(points, normal), settings);
+    constexpr int n = 400;
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3 p(points[static_cast<size_t>(i)]), facing(normal);
+        double sum = 0;
+        for (int x = 0; x < n; ++x)
+            for (int z = 0; z < n; ++z) {
+                const glm::dvec3 q(2 * (x + 0.5) / n - 1, 0, 2 * (z + 0.5) / n - 1);
+                const glm::dvec3 toLamp = glm::dvec3(lamp.position) - q, to = q - p;
+                const double arrives = 5 * toLamp.y / std::pow(glm::length(toLamp), 3);
+                const double cosines = std::max(0.0, glm::dot(to, facing)) * -to.y;
+                sum += arrives * cosines / std::pow(glm::dot(to, to), 2);
+            }
+        const double pi2 = std::numbers::pi * std::numbers::pi;
+        const double expected = 0.8 / pi2 * sum * 4 / (double{n} * n);
+        EXPECT_NEAR(result.light.at(i, 0, 0), expected, 3e-3 * expected + 4 * result.noise) << i;
+        EXPECT_NEAR(result.light.at(i, 0, 2), expected / 4, 3e-3 * expected + 4 * result.noise) << i;
+    }
+    EXPECT_LT(result.noise, 2e-3);
+}
+
 TEST(ReferenceIndirectDiffuse, OpenPlaneAndHalfASky) {
     GATHER_NEEDS_EMBREE();
     LitWorld world;
