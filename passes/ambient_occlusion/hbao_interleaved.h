@@ -19,7 +19,7 @@ public:
     int steps = 4;
     float radius = 0.75f;
     float bias = 0.1f;
-    float exponent = 1;
+    float exponent = 2;
     float maximumRadius = 512;
     bool deinterleaved = true;
 

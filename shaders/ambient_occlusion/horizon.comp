@@ -5,8 +5,8 @@
 // GTAO keeps the highest horizon of each side. BITMASK keeps 32 sectors of equal weight, and takes those away that lie between
 // the front of a sample and its back, `thickness` behind (Therrien, Levesque, Gilet, "Screen Space Indirect Lighting with
 // Visibility Bitmask", 2023): light passes behind what is thin. With LAYERS no thickness is assumed. Behind the first surface
-// stand those that the layers tell of, and each reaches as far back as samples lie apart there: what is between two samples is
-// seen by neither.
+// stand those that the layers tell of. All of them are surfaces, and reach back by LAYERS times the geometric mean of the
+// sample's distance and the radius: about as far as what lies between two samples that neither of them meets.
 #include "ambient_occlusion/eye_grid.glsl"
 #ifdef LAYERS
 #include "lib/frame.glsl"
@@ -121,7 +121,7 @@ void main() {
             bool counts = z > 0.0 && squared < far * far && squared > 0.0;
 #ifdef BITMASK
 #ifdef LAYERS
-            float extent = LAYERS * far * (2.0 * t + 1.0 / float(STEPS)) / float(STEPS);
+            float extent = LAYERS * far * t;
 #else
             float extent = thickness;
 #endif
