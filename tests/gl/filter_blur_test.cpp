@@ -39,6 +39,21 @@ TEST_F(Blur, ATiltedPlaneIsBlurredAsAFacingOneIs) {
     EXPECT_GT(blurred({"blur.slope=false"}).at(16, 8), 0.95);
 }
 
+// In perspective it is one over the depth that a plane changes evenly: what its slope leaves is of second
+// order.
+TEST_F(Blur, APlaneInPerspectiveIsBlurredAsAFacingOneIs) {
+    DepthSource::second = [](int x, int y) { return (x + y) % 2 == 0 ? 1.0f : 0.0f; };
+    DepthSource::depth = [](int, int) { return 2.0f; };
+    const Image facing = blurred({});
+    // Neighbours differ by 1 % along x and by half of that along y: at the fourth the weight is less by a
+    // twelfth.
+    DepthSource::depth = [](int x, int y) {
+        return 2 / (1 + 0.01f * static_cast<float>(16 - x) + 0.005f * static_cast<float>(8 - y));
+    };
+    EXPECT_LE(difference(facing, blurred({})).largest, 0.01);
+    EXPECT_GT(difference(facing, blurred({"blur.slope=false"})).largest, 0.2);
+}
+
 TEST_F(Blur, AnEdgeOfDepthStopsItAndNothingStaysAsItIs) {
     DepthSource::second = [](int x, int) { return x < 16 ? 1.0f : 0.0f; };
     DepthSource::depth = [](int x, int) { return x < 16 ? 1.0f : 1.5f; };
