@@ -14,8 +14,10 @@ PassType ScreenTrace::type() {
         .number("stride", &ScreenTrace::stride, 1, 64, "pixels", "From one sample to the next")
         .flag("jitter", &ScreenTrace::jitter,
               "Shifts the samples by up to a stride, differently for each pixel and frame")
-        .number("thickness", &ScreenTrace::thickness, 0, 10, "scene radii",
-                "How far behind the visible surface there still is something to hit")
+        .number(
+            "thickness", &ScreenTrace::thickness, 0, 10, "view heights",
+            "How far behind the visible surface there still is something to hit, in heights of what the eye "
+            "sees at its distance: the extent of the scene does not count")
         .number("offset", &ScreenTrace::offset, 0, 16, "pixels",
                 "How far ray origins are moved off the surface along its normal, in widths of a pixel there");
 }
@@ -50,8 +52,7 @@ Declaration ScreenTrace::declare(const World&, const Inputs& inputs, const Deman
 }
 
 void ScreenTrace::execute(const Step&, Commands& commands) {
-    const float radius = commands.facts().sphere.radius;
-    commands.uploadValue("settings", shared::ScreenTraceSettings{stride, thickness * radius, offset, 0});
+    commands.uploadValue("settings", shared::ScreenTraceSettings{stride, thickness, offset, 0});
 }
 
 } // namespace kestrel

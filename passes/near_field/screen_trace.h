@@ -17,7 +17,7 @@ public:
     int steps = 64;
     float stride = 1;
     bool jitter = false;
-    // The best of sweeps on `blob` with a near reach that keep an open plane open.
+    // The best on `blob` that keeps an open plane open.
     float thickness = 0.1f;
     float offset = 0.5f;
 };

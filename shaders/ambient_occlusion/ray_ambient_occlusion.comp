@@ -51,6 +51,7 @@ void main() {
         float w = ray.weight > 0.0 ? 1.0 : 0.0;
 #endif
         bool leaves = leaveFace(ray, face);
+        if (background || w == 0.0) ray.tMax = -1.0; // an empty interval: no tracer walks it
         bool met = tracer_anyHit(ray);
         if (leaves && !met) open += w;
         sum += w;

@@ -88,7 +88,8 @@ bool M(march)(Ray ray, out float t, out float error) {
         float depth = texelFetch(M(depth), ivec2(at), 0).x;
         vec2 eye = column * depth + constant;
         float shown = -eye.x / eye.y;
-        if (depth > 0.0 && now > shown && min(now, nearest + before * away) < shown + M(settings).thickness) {
+        float behind = M(settings).thickness * M(pixelWidth)(shown) * size.y;
+        if (depth > 0.0 && now > shown && min(now, nearest + before * away) < shown + behind) {
             // Where the ray passes the depth of the pixel, if it does so here.
             if (abs(away) > 1e-6) t = clamp((shown - nearest) / away, before, t);
             error = max(M(settings).stride * M(pixelWidth)(shown), nearest + t * away - shown);

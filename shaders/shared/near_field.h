@@ -6,7 +6,7 @@ SHARED_BEGIN
 
 struct ScreenTraceSettings {
     float stride;    // pixels from one sample to the next
-    float thickness; // of what the depth buffer shows, scene units along the viewing axis
+    float thickness; // of what the depth buffer shows, along the viewing axis, in heights of the view at its distance
     float offset;    // of a ray's origin along its normal, in widths of a pixel there
     float pad;
 };

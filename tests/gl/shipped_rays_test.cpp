@@ -75,6 +75,29 @@ TEST_F(Rays, QueriesAgreeWithEmbree) {
     }
 }
 
+// Where nothing is and the far plane infinite, a ray of no pixel is still a ray: one from nowhere would be
+// walked through everything.
+TEST_F(Rays, StartSomewhereAlsoWhereNothingIs) {
+    Graph graph = shippedGraph("ray_query");
+    graph.outputs = {{{"rays", "rays"}, {}}};
+    Scene scene = trianglesScene(square());
+    Renderer made = renderer(graph, scene);
+    CameraState camera;
+    camera.view = glm::lookAt(glm::vec3(3, 2, 4), glm::vec3(0), glm::vec3(0, 1, 0));
+    camera.position = {3, 2, 4};
+    camera.nearPlane = 0.05f;
+    camera.farPlane = 0;
+    made.setFreeCamera(camera);
+    made.frame();
+    size_t missing = 0;
+    for (const shared::RayRecord& ray : as<shared::RayRecord>(made.readBytes({"rays", "rays"}))) {
+        missing += (ray.flags & 1u) == 0;
+        for (int k = 0; k < 3; ++k)
+            ASSERT_TRUE(std::isfinite(ray.origin[k]) && std::isfinite(ray.direction[k]));
+    }
+    EXPECT_GT(missing, 1000u);
+}
+
 // The tracer that looks at nothing answers every ray alike, in the scene's measure.
 TEST_F(Rays, TheConstantTracerAnswersAlike) {
     std::string text(readText(shareFolder() / "graphs/ray_query.json"));
