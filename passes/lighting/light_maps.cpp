@@ -77,14 +77,21 @@ LightMap mapOf(const LightState& light, const Sphere& scene, int resolution) {
     return map;
 }
 
-// Smaller map `i` of `count` from small to large, within `whole`: a cube about what the camera sees, more of
-// it ahead of the eye than behind. It moves by whole texels, so that its shadows stand still. What comes
-// between the cube and the light is in it too: rays start where those of the whole map do.
-LightMap nestedMapOf(LightMap whole, std::uint32_t i, std::uint32_t count, const CameraState& camera,
-                     const Sphere& scene, int resolution) {
-    const float smallest = nestedMapReach * std::max(camera.nearPlane, 1e-7f * scene.radius);
+float nearPlaneOf(const CameraState& camera, const Sphere& scene) {
+    return std::max(camera.nearPlane, 1e-7f * scene.radius);
+}
+
+// Half the width of smaller map `i` of `count`, from small to large.
+float nestedHalfWidth(std::uint32_t i, std::uint32_t count, const CameraState& camera, const Sphere& scene) {
+    const float smallest = nestedMapReach * nearPlaneOf(camera, scene);
     const float growth = std::pow(std::max(1.0f, scene.radius / smallest), 1 / static_cast<float>(count));
-    const float half = smallest * std::pow(growth, static_cast<float>(i));
+    return smallest * std::pow(growth, static_cast<float>(i));
+}
+
+// A smaller map within `whole`: a cube about what the camera sees, more of it ahead of the eye than behind.
+// It moves by whole texels, so that its shadows stand still. What comes between the cube and the light is in
+// it too: rays start where those of the whole map do.
+LightMap smallerMap(const LightMap& whole, float half, const CameraState& camera, int resolution) {
     const glm::vec3 ahead = -glm::vec3(camera.view[0][2], camera.view[1][2], camera.view[2][2]);
     const glm::vec3 middle = camera.position + 0.8f * half * ahead;
     const float texel = 2 * half / static_cast<float>(resolution);
@@ -280,8 +287,12 @@ std::vector<std::byte> lightMapBlock(const LightMapLayout& layout, const std::ve
     for (const PlacedMap& placed : placedMaps(layout, lights, scene)) {
         LightMap map = mapOf(lights[placed.light], scene, resolution);
         displace(map, static_cast<std::uint32_t>(placed.light), jitter, scene.radius, resolution, frame);
+        const CameraState& camera = frame.cameraState;
         if (placed.nested)
-            map = nestedMapOf(map, *placed.nested, layout.nested, frame.cameraState, scene, resolution);
+            map = smallerMap(map, nestedHalfWidth(*placed.nested, layout.nested, camera, scene), camera,
+                             resolution);
+        else if (layout.follows && lights[placed.light].kind == LightKind::Directional)
+            map = smallerMap(map, followingMapReach * nearPlaneOf(camera, scene), camera, resolution);
         map.firstLayer = placed.firstLayer;
         maps[placed.slot] = map;
         if (!placed.nested) records[placed.slot] = recordOf(lights[placed.light]);

@@ -24,7 +24,8 @@ struct LightMapLayout {
     bool mapped = true;                    // false: lights without maps
     bool wideSpots = false;                // some spot light's map may have several faces
     std::uint32_t nested = 0;              // smaller maps of each directional light
-    std::uint32_t leftOut = 0;             // lights for which there is no place
+    bool follows = false; // the map of a directional light covers what the camera sees from near, not all
+    std::uint32_t leftOut = 0; // lights for which there is no place
 
     [[nodiscard]] std::uint32_t lights() const;
     [[nodiscard]] std::uint32_t allSlots() const;
@@ -48,6 +49,8 @@ LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, 
 // those reaches, with an orthographic camera, or with more than maxNestedLights directional lights.
 inline constexpr std::uint32_t maxNestedMaps = 7, maxNestedLights = 4;
 inline constexpr float nestedMapReach = 64;
+// Half the width of a map that follows the camera where it asks for nested ones, in near planes.
+inline constexpr float followingMapReach = 4 * nestedMapReach;
 std::uint32_t nestedMaps(const SceneFacts& facts, const CameraState& camera);
 
 // What a block holds: 192 bytes a light, of the 16 KiB that every device allows.

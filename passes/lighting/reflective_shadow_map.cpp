@@ -55,13 +55,16 @@ PassType ReflectiveShadowMap::type() {
     return table;
 }
 
-LightMapLayout ReflectiveShadowMap::layout(const SceneFacts& facts) const {
-    return lightMapLayout(facts, {true, true, directional, areaLights, areaLights}, true);
+LightMapLayout ReflectiveShadowMap::layout(const SceneFacts& facts, bool follows) const {
+    LightMapLayout maps = lightMapLayout(facts, {true, true, directional, areaLights, areaLights}, true);
+    maps.follows = follows;
+    return maps;
 }
 
 Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, const Demand& demand) const {
     Declaration declaration;
-    const LightMapLayout maps = layout(world.facts);
+    // Whether a sun's map covers the scene or follows the camera is known when a frame's camera is.
+    const LightMapLayout maps = layout(world.facts, demand.grown("maps") > 0);
     const bool dark = maps.lights() == 0 || world.facts.triangles == 0;
     declaration.outputs = {{.port = "radiance", .desc = Desc::module(0)}};
     Module module{.port = "radiance",
@@ -114,7 +117,7 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
     draw.uses.push_back({.port = "map_depth", .access = Access::Attachment, .write = true});
     declaration.modules.push_back(std::move(module));
     declaration.steps = {{.name = "views",
-                          .run = {&ReflectiveShadowMap::uploadViews, bytes},
+                          .run = {&ReflectiveShadowMap::uploadViews, bytes, maps.follows},
                           .uses = {{.port = "maps", .access = Access::Copy, .write = true}},
                           .group = "generation"},
                          std::move(draw)};
@@ -129,12 +132,16 @@ Declaration ReflectiveShadowMap::declare(const World& world, const Inputs&, cons
         declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
     declaration.depends =
         Causes::Geometry | Causes::Transforms | Causes::Materials | Causes::Lights | Causes::Properties;
+    if (directional && world.facts.directionalLights > 0) declaration.depends |= Causes::Cut;
+    if (maps.follows) declaration.depends |= Causes::Camera;
     if (jitter || positionJitter > 0) declaration.depends |= Causes::Frame;
     return declaration;
 }
 
-void ReflectiveShadowMap::uploadViews(Commands& commands, int bytes) {
-    const LightMapLayout maps = layout(commands.facts());
+void ReflectiveShadowMap::uploadViews(Commands& commands, int bytes, bool follows) {
+    const LightMapLayout maps = layout(commands.facts(), follows);
+    if (directional && !follows && nestedMaps(commands.facts(), commands.frame().cameraState) > 0)
+        return commands.overflow("maps", 1);
     warnOfShortage(lightMapShortage(maps, resolution, bytes), told_);
     commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts().sphere,
                                           lightMapResolution(maps, resolution, bytes), bias,

@@ -22,8 +22,8 @@ public:
     float bias = 1.5f;
 
 private:
-    void uploadViews(Commands& commands, int bytes); // that a texel of all arrays takes
-    [[nodiscard]] LightMapLayout layout(const SceneFacts& facts) const;
+    void uploadViews(Commands& commands, int bytes, bool follows); // that a texel of all arrays takes
+    [[nodiscard]] LightMapLayout layout(const SceneFacts& facts, bool follows) const;
     std::string told_; // of what cannot be as asked for
 };
 
