@@ -190,7 +190,7 @@ void DirectLight::uploadViews(Commands& commands, const LightMapLayout& maps) {
     const std::uint32_t nested = maps.mapped ? nestedMaps(commands.facts(), commands.frame().cameraState) : 0;
     if (nested > maps.nested) return commands.overflow("maps", nested);
     warnOfShortage(lightMapShortage(maps, resolution, texelBytes), told_);
-    commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts().sphere,
+    commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts(),
                                           lightMapResolution(maps, resolution, texelBytes), bias, {},
                                           commands.frame()));
 }

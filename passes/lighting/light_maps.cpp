@@ -2,6 +2,7 @@
 #include "core/check.h"
 #include "core/log.h"
 #include "draw/material_defines.h"
+#include "draw/near_scene.h"
 #include "shared/random.h"
 #include <algorithm>
 #include <bit>
@@ -77,13 +78,9 @@ LightMap mapOf(const LightState& light, const Sphere& scene, int resolution) {
     return map;
 }
 
-float nearPlaneOf(const CameraState& camera, const Sphere& scene) {
-    return std::max(camera.nearPlane, 1e-7f * scene.radius);
-}
-
 // Half the width of smaller map `i` of `count`, from small to large.
 float nestedHalfWidth(std::uint32_t i, std::uint32_t count, const CameraState& camera, const Sphere& scene) {
-    const float smallest = nestedMapReach * nearPlaneOf(camera, scene);
+    const float smallest = nestedMapReach * std::max(camera.nearPlane, 1e-7f * scene.radius);
     const float growth = std::pow(std::max(1.0f, scene.radius / smallest), 1 / static_cast<float>(count));
     return smallest * std::pow(growth, static_cast<float>(i));
 }
@@ -106,7 +103,8 @@ LightMap smallerMap(const LightMap& whole, float half, const CameraState& camera
     return map;
 }
 
-// How strongly a light shines on the scene as a whole, to choose between lights of one kind.
+// How strongly a light shines on the scene, or on what is seen of it from near, to choose between lights of
+// one kind.
 float strengthOf(const LightState& light, const Sphere& scene) {
     float strength = std::max({light.intensity.x, light.intensity.y, light.intensity.z});
     if (light.kind == LightKind::Rectangle) strength *= 4 * light.halfSize.x * light.halfSize.y;
@@ -211,8 +209,7 @@ std::uint64_t LightMapLayout::blockBytes() const {
 
 std::uint32_t nestedMaps(const SceneFacts& facts, const CameraState& camera) {
     const float smallest = nestedMapReach * camera.nearPlane;
-    if (facts.directionalLights == 0 || facts.directionalLights > maxNestedLights || camera.orthographic ||
-        !(smallest > 0) || !(facts.sphere.radius > 16 * smallest))
+    if (facts.directionalLights == 0 || facts.directionalLights > maxNestedLights || !isWide(facts, camera))
         return 0;
     const float fours = std::ceil(std::log2(facts.sphere.radius / smallest) / 2);
     return std::min(maxNestedMaps, static_cast<std::uint32_t>(fours));
@@ -278,21 +275,22 @@ void warnOfShortage(const std::vector<LeftOut>& shortage, std::string& told) {
 }
 
 std::vector<std::byte> lightMapBlock(const LightMapLayout& layout, const std::vector<LightState>& lights,
-                                     const Sphere& scene, int resolution, float bias,
+                                     const SceneFacts& facts, int resolution, float bias,
                                      const LightMapJitter& jitter, const FrameInfo& frame) {
+    const CameraState& camera = frame.cameraState;
+    const Sphere scene = facts.sphere, near = nearScene(facts, camera);
     const LightMapCounts counts{
         layout.counts[0], layout.counts[1], layout.counts[2], layout.counts[3], layout.counts[4], bias, 0, 0};
     std::vector<LightMap> maps(layout.allMaps());
     std::vector<LightRecord> records(layout.allSlots());
-    for (const PlacedMap& placed : placedMaps(layout, lights, scene)) {
+    for (const PlacedMap& placed : placedMaps(layout, lights, near)) {
         LightMap map = mapOf(lights[placed.light], scene, resolution);
-        displace(map, static_cast<std::uint32_t>(placed.light), jitter, scene.radius, resolution, frame);
-        const CameraState& camera = frame.cameraState;
+        displace(map, static_cast<std::uint32_t>(placed.light), jitter, near.radius, resolution, frame);
         if (placed.nested)
             map = smallerMap(map, nestedHalfWidth(*placed.nested, layout.nested, camera, scene), camera,
                              resolution);
         else if (layout.follows && lights[placed.light].kind == LightKind::Directional)
-            map = smallerMap(map, followingMapReach * nearPlaneOf(camera, scene), camera, resolution);
+            map = smallerMap(map, near.radius, camera, resolution);
         map.firstLayer = placed.firstLayer;
         maps[placed.slot] = map;
         if (!placed.nested) records[placed.slot] = recordOf(lights[placed.light]);
@@ -325,7 +323,8 @@ void drawLightMaps(const LightMapLayout& layout, Commands& commands) {
     DrawState state;
     state.cull = Cull::None;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> layers; // slot and face
-    for (const PlacedMap& placed : placedMaps(layout, commands.lights(), commands.facts().sphere))
+    const Sphere near = nearScene(commands.facts(), commands.frame().cameraState);
+    for (const PlacedMap& placed : placedMaps(layout, commands.lights(), near))
         for (std::uint32_t face = 0; face < std::max(1u, placed.faces); ++face)
             layers.emplace_back(placed.slot, face);
     commands.drawSceneLayers(state,

@@ -42,15 +42,13 @@ struct LightMapLayout {
 LightMapLayout lightMapLayout(const SceneFacts& facts, const LightKinds& kinds, bool mapped,
                               std::uint32_t nested = 0);
 
-// A directional light's map covers the whole scene. Where that is far larger than what a camera sees from
-// near, its texels are too: smaller maps lie about what the camera sees, each four times as wide as the one
-// within (or more, where maxNestedMaps are not enough), the smallest as wide as the camera sees at
-// nestedMapReach near planes. How many this camera asks for: none where the scene's radius is below 16 of
-// those reaches, with an orthographic camera, or with more than maxNestedLights directional lights.
+// A directional light's map covers the whole scene. Where that is wide (draw/near_scene.h), its texels are
+// too: smaller maps lie about what the camera sees, each four times as wide as the one within (or more, where
+// maxNestedMaps are not enough), the smallest as wide as the camera sees at nestedMapReach near planes. How
+// many this camera asks for: none where the scene is not wide, or with more than maxNestedLights directional
+// lights.
 inline constexpr std::uint32_t maxNestedMaps = 7, maxNestedLights = 4;
 inline constexpr float nestedMapReach = 64;
-// Half the width of a map that follows the camera where it asks for nested ones, in near planes.
-inline constexpr float followingMapReach = 4 * nestedMapReach;
 std::uint32_t nestedMaps(const SceneFacts& facts, const CameraState& camera);
 
 // What a block holds: 192 bytes a light, of the 16 KiB that every device allows.
@@ -68,15 +66,15 @@ void warnOfShortage(const std::vector<LeftOut>& shortage, std::string& told);
 // How the maps of a frame are displaced against aliasing.
 struct LightMapJitter {
     bool texel = false; // by a random part of a texel
-    float position = 0; // random offset of the light, as a share of the scene's radius
+    float position = 0; // random offset of the light, as a share of the radius of nearScene()
 };
 
-// The block: counts, maps, and light records of each slot. Maps cover a scene of that bounding sphere; faces
+// The block: counts, maps, and light records of each slot. Maps cover the scene; faces
 // are wider than their share of directions by lightMapGuard texels on each side, so that filters need no
 // neighbour.
 inline constexpr float lightMapGuard = 3;
 std::vector<std::byte> lightMapBlock(const LightMapLayout& layout, const std::vector<LightState>& lights,
-                                     const Sphere& scene, int resolution, float bias,
+                                     const SceneFacts& facts, int resolution, float bias,
                                      const LightMapJitter& jitter, const FrameInfo& frame);
 
 // The raster step that draws into array attachments (its uses are the caller's), and running it: one draw a

@@ -49,7 +49,9 @@ PassType ReflectiveShadowMap::type() {
         .flag("jitter", &ReflectiveShadowMap::jitter,
               "Displaces the maps by parts of a texel, differently every frame")
         .number("position_jitter", &ReflectiveShadowMap::positionJitter, 0, 0.1, "scene radii",
-                "Displaces the places that maps are seen from by up to this, differently every frame")
+                "Displaces the places that maps are seen from by up to this, differently every frame (radii "
+                "of what "
+                "the camera sees from near where the scene is far wider)")
         .number("bias", &ReflectiveShadowMap::bias, 0, 16, "texels",
                 "How far off a texel's surface a hit may lie, besides the hit's own error");
     return table;
@@ -143,7 +145,7 @@ void ReflectiveShadowMap::uploadViews(Commands& commands, int bytes, bool follow
     if (directional && !follows && nestedMaps(commands.facts(), commands.frame().cameraState) > 0)
         return commands.overflow("maps", 1);
     warnOfShortage(lightMapShortage(maps, resolution, bytes), told_);
-    commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts().sphere,
+    commands.upload("maps", lightMapBlock(maps, commands.lights(), commands.facts(),
                                           lightMapResolution(maps, resolution, bytes), bias,
                                           {jitter, positionJitter}, commands.frame()));
 }

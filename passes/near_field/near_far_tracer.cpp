@@ -1,4 +1,5 @@
 #include "near_far_tracer.h"
+#include "draw/near_scene.h"
 #include "execute/commands.h"
 #include "shared/near_field.h"
 
@@ -13,7 +14,10 @@ PassType NearFarTracer::type() {
         .internal("settings", PortKind::Buffer, "The reach (shared/near_field.h)")
         .number("reach", &NearFarTracer::reach, 0, 1e9, "scene units or radii",
                 "Distance along the ray at which the far tracer takes over; 0: it answers alone")
-        .flag("relative", &NearFarTracer::relative, "The reach is given in radii of the scene's sphere");
+        .flag("relative", &NearFarTracer::relative,
+              "The reach is given in radii of the scene's sphere, or of what the camera sees from near where "
+              "the "
+              "scene is far wider");
 }
 
 Declaration NearFarTracer::declare(const World&, const Inputs& inputs, const Demand& demand) const {
@@ -43,12 +47,12 @@ Declaration NearFarTracer::declare(const World&, const Inputs& inputs, const Dem
         {.port = "settings", .desc = Desc::buffer(sizeof(shared::NearFarSettings))});
     declaration.steps.push_back(
         {.name = "settings", .uses = {{.port = "settings", .access = Access::Copy, .write = true}}});
-    declaration.depends = Causes::Properties;
+    declaration.depends = Causes::Properties | Causes::Cut; // another camera sees from another distance
     return declaration;
 }
 
 void NearFarTracer::execute(const Step&, Commands& commands) {
-    const float unit = relative ? commands.facts().sphere.radius : 1.0f;
+    const float unit = relative ? nearScene(commands.facts(), commands.frame().cameraState).radius : 1.0f;
     commands.uploadValue("settings", shared::NearFarSettings{reach * unit, 0, 0, 0});
 }
 

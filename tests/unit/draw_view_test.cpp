@@ -1,3 +1,4 @@
+#include "draw/near_scene.h"
 #include "draw/view_data.h"
 #include "graph/pass.h"
 #include <glm/gtc/matrix_transform.hpp>
@@ -165,6 +166,31 @@ TEST(Jitter, IsHaltonAroundTheCentre) {
     EXPECT_EQ(seen.size(), jitterPeriod);
     EXPECT_LT(glm::length(sum / double(jitterPeriod)), 0.02);
     EXPECT_EQ(jitterOf(jitterPeriod + 3), jitterOf(3));
+}
+
+// A scene of a few metres is taken whole; of one of kilometres what the camera sees from near, however far it
+// goes; and scale does not matter.
+TEST(NearScene, OfAWideSceneIsWhatTheCameraSees) {
+    for (const float scale : {1e-3F, 1.0F, 1e3F}) {
+        CameraState camera = cameraLooking(scale * glm::vec3(1, 2, 5), glm::vec3(0));
+        camera.nearPlane = 0.05F * scale;
+        SceneFacts facts;
+        facts.sphere = {scale * glm::vec3(1, 0, 0), 40 * scale};
+        EXPECT_FALSE(isWide(facts, camera));
+        EXPECT_EQ(nearScene(facts, camera).radius, facts.sphere.radius);
+        EXPECT_EQ(nearScene(facts, camera).centre, facts.sphere.centre);
+        for (const float radius : {60.0F, 1e5F}) {
+            facts.sphere.radius = radius * scale;
+            EXPECT_TRUE(isWide(facts, camera));
+            const Sphere near = nearScene(facts, camera);
+            EXPECT_FLOAT_EQ(near.radius, 256 * 0.05F * scale);
+            EXPECT_NEAR(glm::length(near.centre - camera.position), near.radius, 1e-4F * near.radius);
+            // Ahead: towards the origin.
+            EXPECT_LT(glm::dot(near.centre - camera.position, camera.position), 0);
+        }
+        camera.orthographic = true;
+        EXPECT_EQ(nearScene(facts, camera).radius, facts.sphere.radius);
+    }
 }
 
 } // namespace
