@@ -160,11 +160,17 @@ Declaration AmbientOcclusionFirst::declare(const World& world, const Inputs& inp
     } else {
         declaration.leftOut.push_back({"masks", "nobody refines what they mark"});
     }
-    if (lists) {
-        first.defines.emplace("LIST", "1");
-        first.uses.push_back({.port = "pixels", .access = Access::Storage, .write = true});
-    }
     declaration.steps.push_back(std::move(first));
+    // A step of its own: atomics are paid for by all lanes, wanted or not, and so one serves several pixels.
+    if (lists)
+        declaration.steps.push_back(
+            {.name = "list",
+             .run = &AmbientOcclusionFirst::list,
+             .shaders = {"stochastic_depth/list.comp"},
+             .defines = {{"WANTED", "mask"},
+                         {"WANTED_FORMAT", std::string(formatInfo(maskFormat).name)},
+                         {"LIST", "Pixels"}},
+             .uses = {imageOf("mask", false), {.port = "pixels", .access = Access::Storage, .write = true}}});
     if (!marks) return declaration;
 
     Step mark{.name = interval ? "interval" : "sd_mask",
@@ -225,6 +231,11 @@ void AmbientOcclusionFirst::occlude(Commands& commands) const {
         commands.set("reach", glm::vec4(glm::vec2(band - more), size + band + more));
     }
     commands.dispatchOver(commands.desc("visibility").extent);
+}
+
+void AmbientOcclusionFirst::list(Commands& commands) const {
+    const Extent extent = commands.desc("mask").extent;
+    commands.dispatchOver((extent.width + 7) / 8, extent.height);
 }
 
 void AmbientOcclusionFirst::mark(Commands& commands) const {

@@ -33,6 +33,7 @@ public:
 private:
     void prepare(Commands& commands) const;
     void occlude(Commands& commands) const;
+    void list(Commands& commands) const;
     void mark(Commands& commands) const;
     [[nodiscard]] int sampleCount() const { return 8 << static_cast<int>(samples); }
     [[nodiscard]] View mapView(const View& depth) const;

@@ -17,7 +17,7 @@ public:
                                       const Demand& demand) const override;
 
     bool edges = true;
-    float edge = 0.05f;
+    float edge = 0.5f;
     int density = 17;
     RayCollection collection = RayCollection::Reservoir;
     int maxCount = 8;

@@ -6,7 +6,9 @@
 namespace kestrel {
 
 // Draws the scene once at the map's resolution; slots are images, so that any number of them works and
-// nothing depends on the positions of a driver's samples. Coverage masks and the k-buffer give the same map
+// nothing depends on the positions of a driver's samples. (A form with gl_SampleMask on a target of K samples
+// gives this map only where all samples can be placed at the centre of a pixel, by GL_ARB_sample_locations:
+// llvmpipe has it not, so there is none.) Coverage masks and the k-buffer give the same map
 // in whatever order fragments come, the reservoir depends on that order (drivers that shade in the order of
 // drawing give the same each time).
 class StochasticDepthRaster final : public Pass {

@@ -86,7 +86,8 @@ Declaration StochasticDepthRay::declare(const World& world, const Inputs& inputs
                   .uses = {{.port = map.mask, .access = Access::Image},
                            {.port = "texels", .access = Access::Storage, .write = true}},
                   .group = "generation"};
-        if (interval) list.defines.emplace("WANTED_INTERVAL", "1");
+        list.defines = {
+            {"WANTED", map.mask}, {"WANTED_FORMAT", interval ? "r32ui" : "r8ui"}, {"LIST", "Texels"}};
         declaration.steps.push_back(std::move(list));
     }
 

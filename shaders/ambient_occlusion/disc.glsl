@@ -27,6 +27,7 @@ struct DiscPoint {
     vec3 plane;               // the normal along tangent, bitangent, toEye
     float radius, perRadius;  // scene units, one over them
     float radiusPixels;       // of the image
+    float cutoffSquared;      // of the kernel's, pixels of the image
     float away;               // distance from the eye, or from its plane of a parallel projection
     vec2 place;               // pixel coordinate in the image
 };
@@ -50,6 +51,7 @@ DiscPoint discPoint(EyeGrid grid, vec2 place, float depth, vec3 normal, ivec2 pi
     point.radius = min(kernel.radius, most);
     point.perRadius = 1.0 / point.radius;
     point.radiusPixels = point.radius * pixelsPerUnit;
+    point.cutoffSquared = kernel.cutoff * kernel.cutoff / (divisor * divisor);
 
     vec2 turn = discTurns[(pixel.x & 3) + 4 * (pixel.y & 3)];
     vec3 bitangent = normalize(cross(point.toEye, vec3(turn, 0.0)));
@@ -116,9 +118,10 @@ float contribution(DiscPoint point, DiscSample s, vec3 position) {
 float reachOf(DiscSample s) { return IS_HBAO ? max(s.front, 0.1) : 1.0 + kernel.thickness + s.front; }
 
 // Whether a first surface so high may hide what occludes.
-bool mayHide(DiscPoint point, DiscSample s, float height, float divisor) {
+bool mayHide(DiscPoint point, DiscSample s, float height) {
     float least = IS_HBAO ? max(s.front, 0.1) : 1.0 + kernel.thickness;
-    return height > least && distance(s.place, point.place) * divisor > kernel.cutoff;
+    vec2 way = s.place - point.place;
+    return height > least && dot(way, way) > point.cutoffSquared;
 }
 
 // Of the sum of contributions, before it is clamped and raised to the exponent.

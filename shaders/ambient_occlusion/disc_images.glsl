@@ -22,13 +22,13 @@ float firstContribution(EyeGrid grid, DiscPoint point, DiscSample s, out float h
     vec3 first = eyePosition(grid, place, depthOrFar(imageLoad(view_depth, s.pixel).r));
     float value = contribution(point, s, first);
     height = sampleHeight(point, first);
-    hidden = mayHide(point, s, height, float(depthView.divisor));
+    hidden = mayHide(point, s, height);
 #ifdef DUAL
     vec3 second = eyePosition(grid, place, depthOrFar(imageLoad(second_depth, s.pixel).r));
     if (hidden) {
         value = min(value, contribution(point, s, second));
         height = min(height, sampleHeight(point, second));
-        hidden = mayHide(point, s, height, float(depthView.divisor));
+        hidden = mayHide(point, s, height);
     }
 #endif
     return s.self ? s.whole : value;

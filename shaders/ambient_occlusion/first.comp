@@ -1,6 +1,5 @@
 // The first pass: occlusion by the first surface alone, and which samples something behind it may change.
 #include "ambient_occlusion/disc_images.glsl"
-#include "shared/work_list.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -11,12 +10,6 @@ layout(r16f) uniform writeonly image2D mean;
 #ifdef MASK
 layout(MASK_FORMAT) uniform writeonly uimage2D mask;
 uniform vec4 reach; // of the stochastic depth map: the corners of what it covers, pixel coordinates of the depth
-#endif
-#ifdef LIST
-layout(std430) buffer Pixels {
-    WorkListHeader header;
-    uint items[];
-} list;
 #endif
 
 void main() {
@@ -49,12 +42,5 @@ void main() {
 #ifdef MASK
     if (open) bits = 0u;
     imageStore(mask, pixel, uvec4(bits));
-#endif
-#ifdef LIST
-    if (bits != 0u) {
-        uint index = atomicAdd(list.header.count, 1u);
-        list.items[index] = packPixel(uint(pixel.x), uint(pixel.y));
-        if (index % workListGroup == 0u) atomicAdd(list.header.groups.x, 1u);
-    }
 #endif
 }

@@ -1,21 +1,15 @@
-// Lists the texels that the mask asks for: with WANTED_INTERVAL those whose ray interval is not empty.
+// Lists the pixels of an image of whole numbers that are not 0: the image WANTED, of WANTED_FORMAT, into the block LIST.
 #include "shared/work_list.h"
 
 layout(local_size_x = 64) in;
 
-#ifdef WANTED_INTERVAL
-layout(r32ui) uniform readonly uimage2D ray_max;
-#define WANTED ray_max
-#else
-layout(r8ui) uniform readonly uimage2D sd_mask;
-#define WANTED sd_mask
-#endif
-layout(std430) buffer Texels {
+layout(WANTED_FORMAT) uniform readonly uimage2D WANTED;
+layout(std430) buffer LIST {
     WorkListHeader header;
     uint items[];
 } list;
 
-const int run = 8; // texels of a row that each invocation looks at, so that few atomics meet
+const int run = 8; // pixels of a row that each invocation looks at, so that few atomics meet
 
 void main() {
     ivec2 size = imageSize(WANTED);
