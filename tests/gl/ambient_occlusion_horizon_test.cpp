@@ -175,6 +175,33 @@ TEST_F(Horizons, WithLayersTheTowerIsNearerToRays) {
     EXPECT_LE(layers, 0.75 * best) << layers << " " << best; // measured 0.70
 }
 
+// Whoever gives the layers: all of them by rays or by drawing the scene are the same, and the second alone
+// lacks the others.
+TEST_F(Horizons, LayersComeFromWhoeverGivesThem) {
+    const Scene scene = loadScene("builtin:tower?detail=0.2");
+    const auto image = [&](const std::vector<std::string>& settings) {
+        std::vector<std::string> all = {"horizons.thickness_from=layers",
+                                        "sd_map.divisor=1",
+                                        "sd_map.collection=k_buffer",
+                                        "sd_map.layers_per_texel=8",
+                                        "sd_map.max_count=0",
+                                        "raster_sd_map.divisor=1",
+                                        "raster_sd_map.collection=k_buffer",
+                                        "raster_sd_map.layers_per_texel=8"};
+        all.insert(all.end(), settings.begin(), settings.end());
+        RenderOptions options;
+        options.camera = "outside";
+        return render(shippedGraph("horizon_ao", all), scene, {"blur", "result"}, 1, options, {160, 90, 1});
+    };
+    const Image rays = image({}), drawn = image({"horizons.layers=raster_sd_map.layers"}),
+                second = image({"horizons.layers=second_depth.layers"}),
+                none = image({"horizons.thickness_from=constant", "horizons.thickness=0.1"});
+    // Rays and rasterizer fall to different sides of edges.
+    EXPECT_LE(difference(rays, drawn).rms, 0.01);
+    EXPECT_GT(difference(rays, second).rms, 0.01);
+    EXPECT_GT(difference(rays, none).rms, difference(rays, second).rms);
+}
+
 TEST_F(Horizons, LayersMustBeConnected) {
     std::vector<std::string> settings = byLayers;
     settings.emplace_back("horizons.layers=");
