@@ -2,6 +2,8 @@
 #include "draw/face_input.h"
 #include "draw/no_light.h"
 #include "execute/commands.h"
+#include "shared/ray.h"
+#include <algorithm>
 
 namespace kestrel {
 
@@ -44,8 +46,27 @@ GatherInputs gatherInputs(const Step& step, Commands& commands) {
     GatherInputs inputs;
     inputs.position = commands.downloadImage("position");
     inputs.normal = commands.downloadImage("normal");
-    if (usesFaceNormal(step)) inputs.faceNormal = commands.downloadImage("face_normal");
+    inputs.faceNormal = facesOf(step, commands, inputs.position, inputs.normal);
     return inputs;
+}
+
+Image facesOf(const Step& step, Commands& commands, const Image& position, const Image& normal) {
+    if (usesFaceNormal(step)) return commands.downloadImage("face_normal");
+    const glm::vec3 eye = commands.frame().cameraState.position;
+    Image faces(normal.width, normal.height, 4);
+    for (int y = 0; y < faces.height; ++y)
+        for (int x = 0; x < faces.width; ++x) {
+            glm::vec3 n(0), p(0);
+            for (int k = 0; k < 3; ++k) {
+                n[k] = normal.at(x, y, k);
+                p[k] = position.at(x, y, k);
+            }
+            if (n == glm::vec3(0)) continue;
+            const glm::vec3 size = glm::abs(p), unit = glm::normalize(n);
+            for (int k = 0; k < 3; ++k) faces.at(x, y, k) = unit[k];
+            faces.at(x, y, 3) = shared::rayStart(glm::length(p - eye), std::max({size.x, size.y, size.z}), 0);
+        }
+    return faces;
 }
 
 void finishGather(Commands& commands, const GatherResult& result) {

@@ -23,6 +23,9 @@ Declaration declareGather(const Inputs& inputs, const std::vector<std::string>& 
 
 GatherSettings gatherSettings(Commands& commands, int samples, float distance);
 GatherInputs gatherInputs(const Step& step, Commands& commands); // position, normals
+// The input `face_normal`, or where nothing is connected what shaders take for it (lib/face.glsl): the
+// normals, and starts of rays by the distance from the eye.
+Image facesOf(const Step& step, Commands& commands, const Image& position, const Image& normal);
 // Writes "result" and reports noise and samples.
 void finishGather(Commands& commands, const GatherResult& result);
 

@@ -51,7 +51,7 @@ void ReferenceAmbientOcclusion::execute(const Step& step, Commands& commands) {
     OcclusionInputs inputs{.position = commands.downloadImage("position"),
                            .normal = commands.downloadImage("normal"),
                            .faceNormal = {}};
-    if (usesFaceNormal(step)) inputs.faceNormal = commands.downloadImage("face_normal");
+    inputs.faceNormal = facesOf(step, commands, inputs.position, inputs.normal);
     const OcclusionResult result = ambientOcclusion(tracer, inputs, settings);
     commands.uploadImage("visibility", result.visibility);
     commands.report("noise", result.noise);
