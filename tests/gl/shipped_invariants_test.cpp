@@ -31,6 +31,11 @@ std::vector<Case> allCases() {
             if (name == "ray_ao" || name == "soft_shadow" || name == "glossy" || name == "indirect")
                 if (const Graph graph = shippedGraph(name); graph.find(pass) != nullptr)
                     cases.push_back({name, {std::string(pass) + ".tracer=bvh.tracer"}, cases.size()});
+        // So small a picture has no samples that are far on screen.
+        for (const char* edge :
+             {"second_ao_pass.layers=raster_sd_map.layers", "second_ao_pass.layers=adaptive_sd_map.layers",
+              "second_ao_pass.layers=second_depth.layers", "blur.signal=ray_svao.result"})
+            if (name == "svao") cases.push_back({name, {edge, "first_ao_pass.cutoff=1"}, cases.size()});
     }
     return cases;
 }
