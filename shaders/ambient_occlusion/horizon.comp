@@ -55,6 +55,20 @@ Slice sliceOf(vec2 normal) {
     return slice;
 }
 
+// The square of how far a point lies beside the line of sight.
+float besideSquared(vec3 offset, vec3 toEye) {
+    float height = dot(offset, toEye);
+    return max(dot(offset, offset) - height * height, 0.0);
+}
+
+// How high toward the eye a point stands when it is turned about the line of sight into the slice, as high over the surface
+// as it is. Centres of pixels and texels lie beside the slice: as they are, they would raise a tilted plane over itself.
+// `over` is the height over the surface, `lean` the normal's part to the slice's own side, `upright` one over its part toward
+// the eye.
+float heightInSlice(float over, float beside, float side, float lean, float upright) {
+    return (over - side * sqrt(beside) * lean) * upright;
+}
+
 // The cosine of the angle to what lies `height` toward the eye and at the root of `beside` to the side.
 float cosineOf(float height, float beside) { return height * inversesqrt(max(height * height + beside, 1e-30)); }
 
@@ -93,10 +107,11 @@ void main() {
     float shift = (float((pixel.y - pixel.x) & 3) + 0.5) / 4.0;
 #ifdef LAYERS
     vec2 toFrame = float(depthView.divisor) / vec2(frame.size), fromFrame = vec2(frame.size) / float(depthView.divisor);
-    float band = float(depthView.guard), upright = 1.0 / max(dot(n, toEye), 0.1);
+    float band = float(depthView.guard);
 #endif
+    float upright = 1.0 / max(dot(n, toEye), 0.1);
 
-    float open = 0.0;
+    float open = 0.0, light = 0.0;
     for (int i = 0; i < SLICES; ++i) {
         float phi = 3.1415927 * (float(i) + turned) / float(SLICES);
         vec2 way = vec2(cos(phi), sin(phi));
@@ -116,8 +131,8 @@ void main() {
             bool inside = all(greaterThanEqual(there, ivec2(0))) && all(lessThan(there, size));
             float z = inside ? imageLoad(view_depth, clamp(there, ivec2(0), size - 1)).r : 0.0;
             vec3 offset = eyePosition(grid, vec2(there) + 0.5, depthOrFar(z)) - position;
-            float squared = dot(offset, offset), height = dot(offset, toEye);
-            float beside = squared - height * height;
+            float squared = dot(offset, offset), beside = besideSquared(offset, toEye);
+            float height = heightInSlice(dot(offset, n), beside, side, inSlice.y, upright);
             bool counts = z > 0.0 && squared < far * far && squared > 0.0;
 #ifdef BITMASK
 #ifdef LAYERS
@@ -146,9 +161,8 @@ void main() {
             for (int which = 0; which < 2; ++which) {
                 float by = which == 0 ? one : two;
                 vec3 found = start + (by < noLayer ? by : 0.0) * ray;
-                float up = dot(found, toEye), aside = max(dot(found, found) - up * up, 0.0);
-                // A texel's place lies beside the slice: turned into it, a point stays as high over the surface as it is.
-                up = (dot(n, found) - side * sqrt(aside) * inSlice.y) * upright;
+                float aside = besideSquared(found, toEye);
+                float up = heightInSlice(dot(found, n), aside, side, inSlice.y, upright);
                 uint more = sectorsBehind(slice, side, up, aside, extent);
                 if (by < noLayer) hidden |= more;
             }
@@ -165,8 +179,10 @@ void main() {
 #else
         open += weight * (weightTo(slice, horizon.x, -1.0) + weightTo(slice, horizon.y, 1.0));
 #endif
+        light += weight * slice.whole;
     }
+    // Of the light of these slices: a few have more or less than their share of the hemisphere's.
     bool nothing = depth == 0.0 || reach < 1.0;
-    float share = nothing ? 1.0 : clamp(open / float(SLICES), 0.0, 1.0);
+    float share = nothing ? 1.0 : clamp(open / light, 0.0, 1.0);
     imageStore(visibility, pixel, vec4(pow(share, exponent)));
 }
