@@ -24,7 +24,7 @@ struct DiscPoint {
     vec3 tangent, bitangent;  // one radius long
     vec3 toEye;               // unit
     vec3 normal;              // eye space
-    vec3 plane;               // the normal along tangent, bitangent, toEye
+    vec2 slope;               // of the tangent plane along tangent and bitangent: height over way
     float radius, perRadius;  // scene units, one over them
     float radiusPixels;       // of the image
     float cutoffSquared;      // of the kernel's, pixels of the image
@@ -56,8 +56,7 @@ DiscPoint discPoint(EyeGrid grid, vec2 place, float depth, vec3 normal, ivec2 pi
     vec2 turn = discTurns[(pixel.x & 3) + 4 * (pixel.y & 3)];
     vec3 bitangent = normalize(cross(point.toEye, vec3(turn, 0.0)));
     vec3 tangent = cross(bitangent, point.toEye);
-    point.plane = vec3(dot(point.normal, tangent), dot(point.normal, bitangent), dot(point.normal, point.toEye));
-    point.plane.z = max(point.plane.z, 1e-4);
+    point.slope = -vec2(dot(point.normal, tangent), dot(point.normal, bitangent)) / max(dot(point.normal, point.toEye), 1e-4);
     point.tangent = tangent * point.radius;
     point.bitangent = bitangent * point.radius;
     return point;
@@ -78,7 +77,7 @@ struct DiscSample {
 DiscSample discSample(EyeGrid grid, DiscPoint point, ivec2 size, vec4 disc) {
     DiscSample s;
     s.front = disc.z;
-    s.back = clamp(-dot(disc.xy, point.plane.xy) / point.plane.z, -disc.z, disc.z);
+    s.back = clamp(dot(disc.xy, point.slope), -disc.z, disc.z);
     s.scale = disc.w;
     s.whole = IS_HBAO ? 0.0 : (s.front - s.back) * s.scale;
     s.counts = s.front - s.back > 0.2 * disc.z;
@@ -97,7 +96,7 @@ float sampleHeight(DiscPoint point, vec3 position) { return dot(position - point
 float vaoContribution(DiscSample s, float height) {
     // Below the tangent plane the chord is free, inside the sphere what lies before; beyond the sphere's front and the
     // thickness it comes back, so that what is far in front casts no halo.
-    float ramp = clamp((height - 1.0 - kernel.thickness) / s.front, 0.0, 1.0);
+    float ramp = clamp((height - 1.0 - kernel.thickness) * 2.0 * s.scale, 0.0, 1.0); // the density is the chord, twice the front
     return max(s.front - max(s.back, height), 0.0) * s.scale + ramp * s.whole;
 }
 
