@@ -224,8 +224,8 @@ void addRenderCommand(CLI::App& app, Run& run) {
                       "naming pass, port and pixel");
     command->add_flag(
         "--count-iterations", arguments->countIterations,
-        "Count the iterations of shaders' loops, and stop (exit 1) where a nest makes more than "
-        "every driver runs, naming pass and step");
+        "Count the iterations of shaders' loops, and stop (exit 1) where one invocation makes more "
+        "than every driver runs, naming pass and step");
     command->add_option("--backend", arguments->backend, "egl, osmesa or window")->capture_default_str();
     command->footer(
         "PNG files hold one and two channels as they are, colours in sRGB.\n\n"

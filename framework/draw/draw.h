@@ -8,8 +8,9 @@ namespace kestrel {
 
 enum class Compare : std::uint8_t { Always, Greater, GreaterEqual, Equal, Less };
 enum class Cull : std::uint8_t { None, Back, Front };
-// Min and Max: of each channel the smaller or the larger of what is there and what is drawn.
-enum class Blend : std::uint8_t { None, Add, Over, Min, Max };
+// Min and Max: of each channel the smaller or the larger of what is there and what is drawn. MaxAndSum: the
+// larger of each colour channel, and the sum of alpha.
+enum class Blend : std::uint8_t { None, Add, Over, Min, Max, MaxAndSum };
 
 struct DrawState {
     Compare depth = Compare::Greater; // depth is reversed: nearer is greater

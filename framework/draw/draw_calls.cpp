@@ -30,7 +30,8 @@ GLenum compareEnum(Compare compare) {
 void applyBlend(Blend blend) {
     enable(GL_BLEND, blend != Blend::None);
     glBlendEquation(blend == Blend::Min ? GL_MIN : blend == Blend::Max ? GL_MAX : GL_FUNC_ADD);
-    if (blend == Blend::Add) glBlendFunc(GL_ONE, GL_ONE);
+    if (blend == Blend::MaxAndSum) glBlendEquationSeparate(GL_MAX, GL_FUNC_ADD);
+    if (blend == Blend::Add || blend == Blend::MaxAndSum) glBlendFunc(GL_ONE, GL_ONE);
     // Colours premultiplied by alpha.
     if (blend == Blend::Over) glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 }

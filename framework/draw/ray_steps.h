@@ -6,8 +6,8 @@
 
 namespace kestrel {
 
-// Rays a pixel that one step traces at most: the rays' loop around a tracer's own loop must stay below the
-// iterations after which llvmpipe silently stops a loop nest (65,535).
+// Rays a pixel that one step traces at most: their loops must stay together below the iterations after which
+// llvmpipe silently cuts an invocation's loops short (65,535).
 inline constexpr int maxRaysPerStep = 16;
 
 // `step` as often as `rays` rays a pixel need, named "trace0", "trace1"…, in the group "tracing". Each gets

@@ -25,7 +25,7 @@ struct ExecutorOptions {
     bool timing = false;      // a clock around every step; waits for the GPU at each where the clock needs it
     bool checkFinite = false; // scans what each pass wrote; an Error of MeasureFailed names the first
     // Counts the iterations of shaders' loops from the next plan on; an Error of MeasureFailed names the
-    // steps with a nest of more than a driver surely runs (shader/iterations.h).
+    // steps that make more than a driver surely runs (shader/iterations.h).
     bool countIterations = false;
 };
 

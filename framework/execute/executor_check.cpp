@@ -1,4 +1,4 @@
-// What is looked at after passes and frames: loop nests that gave up, and values that no output should hold.
+// What is looked at after passes and frames: loops that gave up, and values that no output should hold.
 #include "execute/executor.h"
 #include "execute/finite.h"
 #include "gl/loader.h"
@@ -38,7 +38,7 @@ void Executor::checkIterations() {
         std::memcpy(&block, bytes.data() + i * static_cast<size_t>(iterationsStride), sizeof(block));
         if (block.exhausted == 0) continue;
         problems.push_back({{},
-                            fmt::format("{}: {} loop nests made more than {} iterations (the most: {})",
+                            fmt::format("{}: the loops of {} invocations made more than {} iterations (the most: {})",
                                         labels_[i], block.exhausted, maxIterations, block.maximum)});
     }
     if (!problems.empty()) throw Error(ExitStatus::MeasureFailed, std::move(problems));

@@ -149,6 +149,21 @@ struct DepthLayers {
     friend bool operator==(const DepthLayers&, const DepthLayers&) = default;
 };
 
+// What the buffers of an A-buffer tell whoever reads them, at declaration: how its lists are kept (Vardis,
+// Vasilakis, Papaioannou 2016, section 4.3 and Table 2), and of which views.
+struct FragmentLists {
+    // SB: contiguous. LL, DLL: lists linked one way or both. LLB, DLLB: the same, one list for each of
+    // `buckets` equal parts of a pixel's depth range.
+    enum class Structure : std::uint8_t { SB, LL, DLL, LLB, DLLB };
+    Structure structure = Structure::DLLB;
+    int buckets = 1;
+    bool decoupled = true; // which triangle a fragment is of lies in a buffer of its own, not in its node
+    bool mainView = true;  // the frame's view comes first, then the six faces of the cube
+    int side = 0;          // of a face, pixels; 0: there is no cube
+    float nearPlane = 0;   // by which each face's eye stands behind the frame's, scene units
+    friend bool operator==(const FragmentLists&, const FragmentLists&) = default;
+};
+
 // Describes what stands behind a port.
 struct Desc {
     ResourceKind kind = ResourceKind::Texture2D;
@@ -160,6 +175,7 @@ struct Desc {
     Bits provides = 0;       // of a module
     Bits required = 0;       // of a radiance module: of the hits that it is asked about
     DepthLayers depthLayers; // of a layers module
+    FragmentLists lists;     // of an A-buffer's buffers
     friend bool operator==(const Desc&, const Desc&) = default;
 
     static Desc texture2D(Format format, Extent extent, View view = {});

@@ -1,5 +1,6 @@
 #include "occupancy_trace.h"
 #include "execute/commands.h"
+#include "execute/exhausted_rays.h"
 #include "grid.h"
 #include "tracing.h"
 #include <bit>

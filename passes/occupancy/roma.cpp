@@ -1,6 +1,7 @@
 #include "roma.h"
 #include "aligned_maps.h"
 #include "execute/commands.h"
+#include "execute/exhausted_rays.h"
 #include "grid.h"
 #include "tracing.h"
 

@@ -2,6 +2,7 @@
 #include "aligned_maps.h"
 #include "exact_marking.h"
 #include "execute/commands.h"
+#include "execute/exhausted_rays.h"
 #include "grid.h"
 #include "tracing.h"
 #include <algorithm>

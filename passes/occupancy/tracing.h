@@ -21,14 +21,4 @@ bool fitsTexels(const Desc& buffer, const Capabilities& capabilities);
 // The resolution of the map at input "occupancy". Nothing, and a problem, if it is none.
 std::optional<int> mapResolution(const Inputs& inputs, Declaration& declaration);
 
-// Rays that ran out of iterations, counted by consumers in the storage block `Exhausted` of the module
-// (define COUNT_EXHAUSTED), port "exhausted", and reported with the next frame.
-namespace exhaustion {
-// Adds the port, its uses by the module and by the step that clears it, and the step "report" in front of
-// all.
-void declare(Declaration& declaration, Module& tracer, Step& clears);
-void clear(Commands& commands);  // in the step that clears it
-void report(Commands& commands); // in the step "report": "rays" and "exhausted rays"
-} // namespace exhaustion
-
 } // namespace kestrel

@@ -38,7 +38,6 @@ void main() {
     uint seed = pixelSeed(uvec2(pixel), randomRayDirection, frame.seed);
 
     float open = 0.0, sum = 0.0;
-    ITERATIONS_BEGIN;
     for (uint i = 0u; i < uint(RAYS); ++i) {
         ITERATION;
         vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);

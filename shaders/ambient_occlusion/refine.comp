@@ -84,7 +84,6 @@ void main() {
 
     float change = 0.0;
     uint bits = imageLoad(mask, pixel).r & SAMPLE_BITS;
-    ITERATIONS_BEGIN;
     while (bits != 0u) {
         ITERATION;
         int i = findLSB(bits);

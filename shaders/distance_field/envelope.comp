@@ -52,7 +52,6 @@ void main() {
     int stands[RESOLUTION];
     float heights[RESOLUTION];
     int top = -1;
-    ITERATIONS_BEGIN;
     for (int i = 0; i < RESOLUTION; ++i) {
         ITERATION;
         float height = across(line, i);

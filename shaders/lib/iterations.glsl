@@ -1,21 +1,20 @@
-// The loop guard. Some drivers stop a loop nest (an outermost loop with all loops inside it, also those of functions
-// that it calls) silently after 65,535 iterations; no nest may make more than 65,000. Shaders whose bounds depend on data
-// count their iterations where that is asked for (RenderOptions::countIterations); elsewhere these macros are nothing.
+// The loop guard. Some drivers give an invocation 65,535 iterations of all its loops together, those of functions that it calls
+// among them, and then run the body of each further loop once, without an error (llvmpipe, Mesa 22.3.6); no invocation may
+// make more than 65,000. Shaders whose bounds depend on data count their iterations where that is asked for
+// (RenderOptions::countIterations); elsewhere these macros are nothing.
 //
 //     void main() {
-//         ITERATIONS_BEGIN;             // before each outermost loop, and before each call outside a loop of a
-//         while (...) {                 // function that loops (a tracer's, say)
+//         while (...) {                 // in main and in whatever it calls (a tracer's functions, say):
 //             ITERATION;                // first in the body of each loop, in whatever file it stands
 //             for (...) { ITERATION; ... }
 //         }
 //         ITERATIONS_END;               // once, where main ends
 //     }
 //
-// A library or module function writes ITERATION only: it cannot know whether its caller loops. An ITERATIONS_BEGIN too few makes
-// sequential nests count as one: a false alarm, never a missed one. What is counted is one invocation's iterations; a driver
-// that runs several in step counts every iteration that any of them makes, so leave a nest some room.
+// What is counted is one invocation's iterations; a driver that runs several in step counts every iteration that any of them
+// makes, so leave some room. What may take more goes into several dispatches.
 //
-// `exhausted` is how many nests exceeded the limit, `maximum` the most iterations of a nest. The block's name is reserved:
+// `exhausted` is how many invocations exceeded the limit, `maximum` the most iterations of one. The block's name is reserved:
 // the executor binds it, clears it and reads it (framework/shader/iterations.h).
 #ifdef KESTREL_COUNT_ITERATIONS
 
@@ -27,27 +26,22 @@ layout(std430) buffer Iterations {
 const uint iterationsLimit = 65000u;
 uint iterationsCount = 0u;
 
-void iterationsRecord() {
-    if (iterationsCount > 0u) atomicMax(iterations.maximum, iterationsCount);
-    iterationsCount = 0u;
-}
+void iterationsRecord() { atomicMax(iterations.maximum, iterationsCount); }
 
 void iterationsCountOne() {
     ++iterationsCount;
-    // Recorded here too: the driver may end the invocation's loop before ITERATIONS_END.
+    // Recorded here too: the driver may end the invocation's loops before ITERATIONS_END.
     if (iterationsCount == iterationsLimit + 1u) {
         atomicAdd(iterations.exhausted, 1u);
         atomicMax(iterations.maximum, iterationsCount);
     }
 }
 
-#define ITERATIONS_BEGIN iterationsRecord()
 #define ITERATION iterationsCountOne()
 #define ITERATIONS_END iterationsRecord()
 
 #else
 
-#define ITERATIONS_BEGIN
 #define ITERATION
 #define ITERATIONS_END
 

@@ -76,27 +76,22 @@ void main() {
 #endif
 
 #if POINT_LIGHTS > 0
-    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, 0, POINT_LIGHTS, counts.points, addPunctual(slot);)
 #endif
-    ITERATIONS_BEGIN;
     const uint spots = uint(POINT_LIGHTS);
 #if SPOT_LIGHTS > 0
     EACH_LIGHT(slot, spots, SPOT_LIGHTS, counts.spots, addPunctual(slot);)
 #endif
-    ITERATIONS_BEGIN;
     const uint directionals = spots + uint(SPOT_LIGHTS);
 #if DIRECTIONAL_LIGHTS > 0
     EACH_LIGHT(slot, directionals, DIRECTIONAL_LIGHTS, counts.directionals, addPunctual(slot);)
 #endif
 #ifdef OUT_RESULT
-    ITERATIONS_BEGIN;
     const uint rectangles = directionals + uint(DIRECTIONAL_LIGHTS);
 #if RECTANGLE_LIGHTS > 0
     EACH_LIGHT(slot, rectangles, RECTANGLE_LIGHTS, counts.rectangles,
                irradiance += rectangleLight(lights[slot], position, n, face) * visible(slot);)
 #endif
-    ITERATIONS_BEGIN;
     const uint spheres = rectangles + uint(RECTANGLE_LIGHTS);
 #if SPHERE_LIGHTS > 0
     EACH_LIGHT(slot, spheres, SPHERE_LIGHTS, counts.spheres,

@@ -106,25 +106,20 @@ void main() {
 
     vec3 light = vec3(0.0);
 #if POINT_LIGHTS > 0
-    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, 0, POINT_LIGHTS, counts.points, light += gathered(slot, hashCombine(seed, slot), first);)
 #endif
 #if SPOT_LIGHTS > 0
-    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, POINT_LIGHTS, SPOT_LIGHTS, counts.spots, light += gathered(slot, hashCombine(seed, slot), first);)
 #endif
 #if DIRECTIONAL_LIGHTS > 0
-    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS, DIRECTIONAL_LIGHTS, counts.directionals,
                light += gathered(slot, hashCombine(seed, slot), first);)
 #endif
 #if RECTANGLE_LIGHTS > 0
-    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS, RECTANGLE_LIGHTS, counts.rectangles,
                light += gathered(slot, hashCombine(seed, slot), first);)
 #endif
 #if SPHERE_LIGHTS > 0
-    ITERATIONS_BEGIN;
     EACH_LIGHT(slot, POINT_LIGHTS + SPOT_LIGHTS + DIRECTIONAL_LIGHTS + RECTANGLE_LIGHTS, SPHERE_LIGHTS, counts.spheres,
                light += gathered(slot, hashCombine(seed, slot), first);)
 #endif

@@ -90,7 +90,6 @@ void main() {
     TriangleWalk walk = triangleWalk(corners.a, corners.b, corners.c, RESOLUTION);
     // Tiles of the group's size over the box, dealt out to the slices in turn.
     ivec2 tiles = (walk.last.xy - walk.first.xy) / 8 + 1;
-    ITERATIONS_BEGIN;
     for (int tile = int(gl_WorkGroupID.x); tile < tiles.x * tiles.y; tile += int(largeSlices)) {
         ITERATION;
         ivec2 at = walk.first.xy + 8 * ivec2(tile % tiles.x, tile / tiles.x) + ivec2(gl_LocalInvocationID.xy);
@@ -117,7 +116,6 @@ void main() {
         atomicMax(large.groupsZ, place / maxGroups + 1u);
         columns = 0;
     }
-    ITERATIONS_BEGIN;
     for (int i = 0; i < columns; ++i) {
         ITERATION;
         markColumn(triangle, corners, walk, walk.first.x + i % size.x, walk.first.y + i / size.x);

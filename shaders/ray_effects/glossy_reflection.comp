@@ -41,7 +41,6 @@ void main() {
     uint seed = pixelSeed(uvec2(pixel), randomGlossy, frame.seed);
 
     vec3 light = vec3(0.0);
-    ITERATIONS_BEGIN;
     for (uint i = 0u; i < uint(RAYS); ++i) {
         ITERATION;
         vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);

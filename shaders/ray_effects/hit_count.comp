@@ -24,7 +24,6 @@ void main() {
     Ray ray = surfaceRay(origin, vec3(0.0), direction);
     ray.tMin = tNear;
     ray.tMax = tFar;
-    ITERATIONS_BEGIN;
     hits_all(ray);
     ITERATIONS_END;
     imageStore(count, pixel, vec4(float(counted)));

@@ -36,7 +36,6 @@ void main() {
 
     vec3 light = vec3(0.0);
     float sum = 0.0;
-    ITERATIONS_BEGIN;
     for (uint i = 0u; i < uint(RAYS); ++i) {
         ITERATION;
         vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);

@@ -34,7 +34,6 @@ void main() {
     ray.tMax = exists ? ray.tMax : -1.0;
     tracer_aim(ray);
     Hit hit = noHit;
-    ITERATIONS_BEGIN;
 #ifdef CLOSEST
     bool met = tracer_closestHit(ray, hit) && exists;
 #else

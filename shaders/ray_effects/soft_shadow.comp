@@ -156,7 +156,6 @@ void main() {
 
     vec3 light = vec3(0.0);
     float blocked = 0.0; // how bright what does not arrive is
-    ITERATIONS_BEGIN;
     for (uint i = 0u; i < uint(RAYS); ++i) {
         ITERATION;
         vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);

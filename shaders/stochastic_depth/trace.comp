@@ -101,7 +101,6 @@ void main() {
     if (inside && first == 0.0) ray.tMax = -1.0;
     for (int i = 0; i < LAYERS; ++i) kept[i] = noLayer;
     seed = pixelSeed(uvec2(texel), randomStochasticDepth, frame.seed);
-    ITERATIONS_BEGIN;
     hits_all(ray);
     ITERATIONS_END;
     for (int i = 0; i < LAYERS; ++i) kept[i] = kept[i] < noLayer ? kept[i] * cosine : noLayer;

@@ -49,7 +49,6 @@ void main() {
     Ray ray = Ray(r.origin, r.normal, r.direction, r.tMin, (r.flags & 1u) != 0u ? r.tMax : -1.0, 1.0, 0u);
     tracer_aim(ray);
     Hit hit;
-    ITERATIONS_BEGIN;
     bool found = tracer_closestHit(ray, hit);
     if (found) normals[id] = vec4(tracer_surface(ray, hit).normal, hit.t);
     else normals[id] = vec4(0.0);

@@ -211,7 +211,6 @@ TEST_P(Iterations, CompilesWithAndWithoutCounting) {
                                  "layout(local_size_x = 1) in;\n"
                                  "buffer B { uint bound; uint sum; };\n"
                                  "void main() {\n"
-                                 "    ITERATIONS_BEGIN;\n"
                                  "    for (uint i = 0u; i < bound; ++i) { ITERATION; ++sum; }\n"
                                  "    ITERATIONS_END;\n"
                                  "}\n");

@@ -1,0 +1,26 @@
+// The first stage of the A-buffer: depth bounds of every pixel of the frame's view and of a cube about the
+// eye (Vardis, Vasilakis, Papaioannou, "A Multiview and Multilayer Approach for Interactive Ray Tracing", I3D
+// 2016, sections 3.2 and 3.3). The paper's atomic minimum and maximum are blending here, which also counts
+// the fragments, so that the store stage knows where each list begins.
+#pragma once
+#include "graph/registry.h"
+
+namespace kestrel {
+
+class ABufferBounds final : public Pass {
+public:
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+
+    bool mainView = true;
+    bool cube = true;
+    int side = 0;
+    double nearPlane = 0.01;
+
+private:
+    void drawMain(Commands& commands);
+    void drawCube(Commands& commands);
+};
+
+} // namespace kestrel

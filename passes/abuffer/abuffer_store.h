@@ -1,0 +1,30 @@
+// The second stage of the A-buffer: every fragment of every view becomes a node of its pixel (Vardis,
+// Vasilakis, Papaioannou 2016, section 3.3; the structures are those of section 4.3). The paper takes each
+// address from one counter, which all fragments contend for; with `Counted` the fragments of each pixel,
+// which ABufferBounds has counted, give it an address range by a prefix sum, and a fragment meets only those
+// of its own pixel.
+#pragma once
+#include "graph/registry.h"
+
+namespace kestrel {
+
+enum class ABufferAllocation : std::uint8_t { Counter, Counted };
+
+class ABufferStore final : public Pass {
+public:
+    static PassType type();
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override;
+
+    FragmentLists::Structure structure = FragmentLists::Structure::DLLB;
+    int buckets = 4;
+    bool decoupled = true;
+    ABufferAllocation allocation = ABufferAllocation::Counted;
+
+private:
+    [[nodiscard]] std::vector<Step> beginSteps(const Defines& defines, const FragmentLists& lists,
+                                               std::uint64_t pixels) const;
+    [[nodiscard]] Step drawStep(const World& world, const FragmentLists& lists, bool ofCube) const;
+};
+
+} // namespace kestrel

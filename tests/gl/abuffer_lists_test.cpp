@@ -1,0 +1,273 @@
+// The lists of the A-buffer against all that Embree meets along the ray of each pixel of each view.
+#include "reference/primary_hits.h"
+#include "shared/abuffer.h"
+#include "shipped_fixture.h"
+#include "support/message.h"
+#include <bit>
+
+namespace kestrel::test {
+namespace {
+
+using Structure = FragmentLists::Structure;
+
+struct Fragment {
+    float depth = 0;
+    std::uint32_t triangle = 0;
+    friend bool operator==(const Fragment&, const Fragment&) = default;
+};
+using Lists = std::vector<std::vector<Fragment>>; // by pixel of all views
+
+// What the buffers hold, walked as a reader walks them; linked lists are walked both ways where they can be.
+class ReadLists {
+public:
+    ReadLists(Renderer& made, const std::string& reorder, const std::string& store)
+        : pixels_(as<std::uint32_t>(made.readBytes({reorder, "pixels"})))
+        , nodes_(as<std::uint32_t>(made.readBytes({reorder, "nodes"})))
+        , data_(as<std::uint32_t>(made.readBytes({store, "data"})))
+        , lists_(made.desc({reorder, "nodes"}).lists) {}
+
+    [[nodiscard]] Lists all(size_t count) const {
+        Lists result(count);
+        for (size_t i = 0; i < count; ++i) result[i] = list(i);
+        return result;
+    }
+
+private:
+    [[nodiscard]] bool linkedBack() const {
+        return lists_.structure == Structure::DLL || lists_.structure == Structure::DLLB;
+    }
+    [[nodiscard]] bool bucketed() const {
+        return lists_.structure == Structure::LLB || lists_.structure == Structure::DLLB;
+    }
+    [[nodiscard]] std::uint32_t word(std::uint32_t node, size_t word) const {
+        const size_t words =
+            (linkedBack() ? 3 : 2) + (lists_.decoupled || lists_.structure == Structure::SB ? 0 : 1);
+        return nodes_.at((node - 1) * words + word);
+    }
+    [[nodiscard]] Fragment fragment(std::uint32_t node) const {
+        const size_t last = linkedBack() ? 3 : 2;
+        const std::uint32_t link = lists_.structure == Structure::SB ? word(node, 1) : node;
+        const std::uint32_t triangle = lists_.decoupled                    ? data_.at(link - 1)
+                                       : lists_.structure == Structure::SB ? link
+                                                                           : word(node, last);
+        return {std::bit_cast<float>(word(node, 0)), triangle};
+    }
+    [[nodiscard]] std::vector<Fragment> list(size_t pixel) const {
+        std::vector<Fragment> result;
+        const auto buckets = static_cast<size_t>(lists_.buckets);
+        if (lists_.structure == Structure::SB) {
+            for (std::uint32_t i = 0; i < pixels_.at(2 * pixel + 1); ++i)
+                result.push_back(fragment(pixels_.at(2 * pixel) + i));
+            return result;
+        }
+        const size_t words = bucketed() ? 2 + buckets * (linkedBack() ? 2 : 1) : (linkedBack() ? 2 : 1);
+        const float zMin = bucketed() ? std::bit_cast<float>(pixels_.at(pixel * words)) : 0;
+        const float zMax = bucketed() ? std::bit_cast<float>(pixels_.at(pixel * words + 1)) : 0;
+        for (size_t bucket = 0; bucket < buckets; ++bucket) {
+            const size_t head = pixel * words + (bucketed() ? 2 : 0) + bucket;
+            std::uint32_t previous = 0;
+            for (std::uint32_t node = pixels_.at(head); node != 0; node = word(node, 1)) {
+                result.push_back(fragment(node));
+                if (linkedBack()) {
+                    EXPECT_EQ(word(node, 2), previous) << pixel;
+                }
+                if (bucketed()) {
+                    EXPECT_EQ(shared::abufferBucket(result.back().depth, zMin, zMax, lists_.buckets), bucket);
+                    EXPECT_GE(result.back().depth, zMin);
+                    EXPECT_LE(result.back().depth, zMax);
+                }
+                previous = node;
+            }
+            if (linkedBack()) {
+                EXPECT_EQ(pixels_.at(head + buckets), previous) << pixel;
+            }
+        }
+        return result;
+    }
+
+    std::vector<std::uint32_t> pixels_, nodes_, data_;
+    FragmentLists lists_;
+};
+
+struct ABufferLists : ShippedTest {
+    static constexpr Extent size{48, 27, 1};
+    static constexpr int side = 24;
+    static constexpr float nearPlane = 0.01f;
+    static constexpr size_t mainPixels = 48 * 27, pixels = mainPixels + 6 * 24 * 24;
+
+    static Lists made(const Scene& scene, std::vector<std::string> settings, int frames = 1) {
+        settings.insert(settings.begin(), {fmt::format("depth_bounds.side={}", side),
+                                           fmt::format("depth_bounds.near={}", nearPlane)});
+        Graph graph = shippedGraph("abuffer_ao", settings);
+        graph.outputs = {{{"reorder", "pixels"}, {}}, {{"reorder", "nodes"}, {}}, {{"store", "data"}, {}}};
+        RenderOptions options;
+        options.countIterations = true;
+        Renderer renderer = ABufferLists::renderer(graph, scene, options, size);
+        for (int i = 0; i < frames; ++i) renderer.frame();
+        return ReadLists(renderer, "reorder", "store").all(pixels);
+    }
+
+    // Everything on the ray of a pixel, by depth along the view's axis.
+    static Lists traced(const Scene& scene) {
+        const Geometry geometry = flatten(scene, 0);
+        const ReferenceTracer tracer(geometry, scene);
+        const CameraState camera = cameraAt(scene, 0, 0);
+        Lists result(pixels);
+        const auto trace = [&](const TraceRay& ray, std::vector<Fragment>& list) {
+            tracer.allHits(ray, [&](const TraceHit& hit) {
+                list.push_back({hit.t, hit.triangle});
+                return false;
+            });
+            std::sort(list.begin(), list.end(), [](const Fragment& a, const Fragment& b) {
+                return a.depth < b.depth || (a.depth == b.depth && a.triangle < b.triangle);
+            });
+        };
+        for (int y = 0; y < 27; ++y) { // from the top; the lists' rows go up
+            const std::vector<TraceRay> rays = cameraRays(camera, 48, 27, y);
+            for (int x = 0; x < 48; ++x)
+                trace(rays[static_cast<size_t>(x)], result[static_cast<size_t>((26 - y) * 48 + x)]);
+        }
+        const glm::vec3 eye(camera.position);
+        for (std::uint32_t face = 0; face < shared::abufferFaces; ++face) {
+            // abufferFaceAxes() turns: its inverse is its transpose.
+            glm::mat3 turn;
+            for (int i = 0; i < 3; ++i) {
+                glm::vec3 axis(0);
+                axis[i] = 1;
+                turn[i] = shared::abufferFaceAxes(face, axis);
+            }
+            turn = glm::transpose(turn);
+            for (int y = 0; y < side; ++y)
+                for (int x = 0; x < side; ++x) {
+                    const glm::vec2 at = (glm::vec2(x, y) + 0.5f) * (2.0f / side) - 1.0f;
+                    TraceRay ray;
+                    ray.direction = turn * glm::vec3(at, 1);
+                    ray.origin = eye - nearPlane * turn[2];
+                    ray.tMin = nearPlane;
+                    trace(ray, result[mainPixels +
+                                      static_cast<size_t>((static_cast<int>(face) * side + y) * side + x)]);
+                }
+        }
+        return result;
+    }
+};
+
+// Fragments and hits of one pixel that belong together: the same triangle, or another at the same depth (an
+// edge that one side of the comparison gives to a neighbour).
+size_t unmatched(const std::vector<Fragment>& list, const std::vector<Fragment>& hits, float tolerance) {
+    std::vector<bool> taken(hits.size(), false);
+    size_t lost = 0;
+    for (const Fragment& fragment : list) {
+        size_t best = hits.size();
+        for (size_t i = 0; i < hits.size(); ++i) {
+            if (taken[i] || std::abs(hits[i].depth - fragment.depth) > tolerance * fragment.depth) continue;
+            if (best == hits.size() || hits[i].triangle == fragment.triangle) best = i;
+        }
+        if (best == hits.size())
+            ++lost;
+        else
+            taken[best] = true;
+    }
+    return lost + static_cast<size_t>(std::count(taken.begin(), taken.end(), false));
+}
+
+TEST_F(ABufferLists, AreWhatRaysThroughPixelsMeet) {
+    if (shipped().find("ReferenceAmbientOcclusion") == nullptr) GTEST_SKIP() << "built without Embree";
+    for (const char* source :
+         {"builtin:lattice?detail=0.3", "builtin:hall?detail=0.3", "builtin:grove?detail=0.05"}) {
+        const Scene scene = loadScene(source);
+        const Lists expected = traced(scene), lists = made(scene, {});
+        size_t fragments = 0, lost = 0, longest = 0;
+        for (size_t i = 0; i < pixels; ++i) {
+            fragments += expected[i].size();
+            longest = std::max(longest, lists[i].size());
+            lost += unmatched(lists[i], expected[i], 2e-4f);
+        }
+        EXPECT_GT(fragments, pixels / 2) << source;
+        // Where a ray passes an edge or grazes a triangle the rasterizer's sub-pixel grid decides, not the
+        // ray.
+        EXPECT_LE(lost, fragments / 100)
+            << source << ": " << lost << " of " << fragments << ", longest list " << longest;
+        RecordProperty(std::string("lost_of_") + source, fmt::format("{} of {}", lost, fragments));
+    }
+}
+
+TEST_F(ABufferLists, EveryStructureHoldsTheSameInOrder) {
+    const Scene scene = loadScene("builtin:lattice?detail=0.3");
+    const Lists expected = made(scene, {});
+    for (const std::vector<Fragment>& list : expected)
+        for (size_t i = 1; i < list.size(); ++i)
+            ASSERT_TRUE(list[i - 1].depth < list[i].depth ||
+                        (list[i - 1].depth == list[i].depth && list[i - 1].triangle < list[i].triangle));
+    for (const char* structure : {"sb", "ll", "dll", "llb", "dllb"})
+        for (const char* decoupled : {"true", "false"})
+            for (const char* allocation : {"counter", "counted"})
+                for (const int buckets : {1, 4, 16}) {
+                    const bool bucketed = std::string(structure).ends_with("lb");
+                    if ((!bucketed && buckets > 1) ||
+                        (std::string(structure) == "sb" && std::string(allocation) == "counter"))
+                        continue;
+                    EXPECT_EQ(made(scene, {fmt::format("store.structure={}", structure),
+                                           fmt::format("store.decoupled={}", decoupled),
+                                           fmt::format("store.allocation={}", allocation),
+                                           fmt::format("store.buckets={}", buckets)}),
+                              expected)
+                        << structure << " decoupled " << decoupled << " by " << allocation << ", " << buckets;
+                }
+}
+
+// Copies of a square one behind another, in an order that is none: the list of a pixel is as long as there
+// are copies.
+Scene stack(int count, bool backwards) {
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < count; ++i) {
+        const int at = static_cast<int>((static_cast<std::int64_t>(i) * 7919) % count);
+        const float z =
+            -2.0f * static_cast<float>(backwards ? count - 1 - at : at) / static_cast<float>(count);
+        for (const glm::vec3& p : square()) corners.push_back(2.0f * p + glm::vec3(0, 0, z));
+    }
+    return trianglesScene(corners);
+}
+
+TEST_F(ABufferLists, LongListsAreSortedToo) {
+    for (const int count : {24, 25, 363, 1000, 1001, 3000})
+        for (const char* structure : {"sb", "dll", "dllb"})
+            for (const char* allocation : {"counter", "counted"}) {
+                const bool sb = std::string(structure) == "sb";
+                if (sb && (count > 1000 || std::string(allocation) == "counter")) continue;
+                const Lists lists =
+                    made(stack(count, false), {fmt::format("store.structure={}", structure),
+                                               fmt::format("store.allocation={}", allocation)});
+                size_t longest = 0;
+                for (const std::vector<Fragment>& list : lists) {
+                    longest = std::max(longest, list.size());
+                    for (size_t i = 1; i < list.size(); ++i)
+                        ASSERT_LT(list[i - 1].depth, list[i].depth)
+                            << structure << " " << allocation << " " << count;
+                }
+                EXPECT_EQ(longest, static_cast<size_t>(count)) << structure << " " << allocation;
+            }
+}
+
+TEST_F(ABufferLists, AListThatIsTooLongIsRefusedWithTheLimit) {
+    EXPECT_THAT(messageOf<Error>([] { made(stack(1100, false), {"store.structure=sb"}); }),
+                ::testing::HasSubstr("a list of more than 1000 fragments"));
+}
+
+TEST_F(ABufferLists, NoOrderOfTrianglesMatters) {
+    const Lists lists = made(stack(40, false), {}), other = made(stack(40, true), {});
+    for (size_t i = 0; i < pixels; ++i) {
+        ASSERT_EQ(lists[i].size(), other[i].size()) << i;
+        for (size_t k = 0; k < lists[i].size(); ++k) ASSERT_EQ(lists[i][k].depth, other[i][k].depth);
+    }
+}
+
+TEST_F(ABufferLists, AnEmptySceneHasNone) {
+    Graph graph = shippedGraph("abuffer_ao");
+    Renderer renderer = ABufferLists::renderer(graph, trianglesScene({}), {}, size);
+    renderer.frame();
+    for (const float value : renderer.read({"mean", "result"}).values) EXPECT_EQ(value, 1);
+}
+
+} // namespace
+} // namespace kestrel::test

@@ -1,0 +1,213 @@
+// Rays through an A-buffer: closed forms in a room about the eye, the same hits with and without skipping for
+// every structure, and the hierarchy beside it.
+#include "traced_fixture.h"
+
+namespace kestrel::test {
+namespace {
+
+struct ABufferRays : TracedTest {
+    static constexpr Extent size{64, 36, 1};
+
+    static Graph graph(const std::string& rays, const std::vector<std::string>& settings) {
+        Graph made = parseGraph(R"({"kestrel": 1, "passes": {
+            "gbuffer": {"type": "GBuffer"},
+            "bounds": {"type": "ABufferBounds", "properties": {"side": 64}},
+            "store": {"type": "ABufferStore"}, "reorder": {"type": "ABufferReorder"},
+            "abuffer": {"type": "ABuffer", "properties": {"count_exhausted": true}}, "bvh": {"type": "Bvh"},
+            "hemisphere": {"type": "HemisphereRays"}, "own": {"type": "RaySource"},
+            "query": {"type": "RayQuery", "properties": {"query": "closest"}},
+            "exact": {"type": "RayQuery", "properties": {"query": "closest"}}},
+            "edges": [["bounds.bounds", "store.bounds"], ["bounds.cube_bounds", "store.cube_bounds"],
+                ["store.pixels", "reorder.stored_pixels"], ["store.nodes", "reorder.stored_nodes"],
+                ["store.data", "reorder.data"], ["store.segments", "reorder.segments"],
+                ["reorder.pixels", "abuffer.pixels"], ["reorder.nodes", "abuffer.nodes"], ["store.data", "abuffer.data"],
+                ["gbuffer.depth", "hemisphere.depth"], ["gbuffer.normal", "hemisphere.normal"],
+                ["abuffer.tracer", "query.tracer"], ["bvh.tracer", "exact.tracer"]],
+            "outputs": []})",
+                                "test.json");
+        std::vector<std::string> all = settings;
+        all.push_back("query.rays=" + rays);
+        all.push_back("exact.rays=" + rays);
+        for (const std::string& setting : all) applySetting(made, tracedRegistry(), setting);
+        for (const char* query : {"query", "exact"}) made.outputs.push_back({{query, "hits"}, {}});
+        return made;
+    }
+    struct Hits {
+        std::vector<shared::HitRecord> abuffer, bvh;
+        double exhausted = 0;
+    };
+    static Hits hits(const Scene& scene, const std::string& rays,
+                     const std::vector<std::string>& settings = {}) {
+        RenderOptions options;
+        options.size = size;
+        options.countIterations = true;
+        Renderer made(graph(rays, settings), tracedRegistry(), scene, context().capabilities(), options);
+        made.frame();
+        made.frame(); // tells what was exhausted in the first
+        const auto& values = made.last().values;
+        const auto told = values.find("abuffer");
+        return {as<shared::HitRecord>(made.readBytes({"query", "hits"})),
+                as<shared::HitRecord>(made.readBytes({"exact", "hits"})),
+                told == values.end() ? -1 : told->second.at("exhausted rays")};
+    }
+};
+
+// Six walls about the camera, which stands off the middle.
+Scene room() {
+    std::vector<glm::vec3> corners;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float side : {-1.0f, 1.0f})
+            for (const glm::vec3& p : square()) {
+                glm::vec3 corner;
+                corner[axis] = side;
+                corner[(axis + 1) % 3] = p.x;
+                corner[(axis + 2) % 3] = p.y;
+                corners.push_back(corner);
+            }
+    Scene scene = trianglesScene(corners);
+    Camera camera;
+    camera.name = "inside";
+    Node node;
+    node.camera = 0;
+    node.translation = {0.13f, -0.21f, 0.3f};
+    camera.node = static_cast<int>(scene.nodes.size());
+    scene.cameras = {camera};
+    scene.nodes.push_back(node);
+    scene.roots.push_back(static_cast<int>(scene.nodes.size()) - 1);
+    finishScene(scene);
+    return scene;
+}
+
+// Distance along a ray from within to the walls.
+float toWall(const glm::vec3& origin, const glm::vec3& direction) {
+    float t = INFINITY;
+    for (int axis = 0; axis < 3; ++axis)
+        if (direction[axis] != 0)
+            t = std::min(t, ((direction[axis] > 0 ? 1.0f : -1.0f) - origin[axis]) / direction[axis]);
+    return t;
+}
+
+TEST_F(ABufferRays, EndAtTheWallsOfARoomWhereverTheyStartAndGo) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    std::vector<shared::RayRecord> rays;
+    const glm::vec3 eye = cameraAt(room(), 0, 0).position;
+    EXPECT_GT(glm::length(eye), 0.1f);
+    // Along axes, diagonals of faces and of space, from the eye and elsewhere.
+    for (const glm::vec3& origin :
+         {eye, glm::vec3(0), glm::vec3(-0.6f, 0.5f, 0.1f), eye + glm::vec3(0.2f, 0.2f, 0.2f)})
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z)
+                    if (x != 0 || y != 0 || z != 0) rays.push_back(rayRecord(origin, glm::vec3(x, y, z)));
+    for (int i = 0; i < 4000; ++i) {
+        const glm::vec3 origin = 0.9f * glm::vec3(unit(random), unit(random), unit(random));
+        rays.push_back(rayRecord(origin, glm::vec3(unit(random), unit(random), unit(random))));
+    }
+    for (const char* view : {"bounds.main_view=true", "bounds.main_view=false"}) {
+        RaySource::rays = rays;
+        // At one footprint of thickness a few of a hundred rays pass between the fragments of walls seen
+        // askew.
+        const Hits found = hits(room(), "own.rays", {view, "abuffer.thickness=4"});
+        EXPECT_EQ(found.exhausted, 0);
+        size_t missed = 0, edges = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const float t = found.abuffer[i].t, expected = toWall(rays[i].origin, rays[i].direction);
+            ASSERT_FALSE(std::isnan(t)) << i;
+            // Beside an edge of the room the pixel's centre may show the other wall, whose depth the ray does
+            // not have.
+            const glm::vec3 hit = glm::abs(rays[i].origin + expected * rays[i].direction - eye);
+            const float footprint = std::max({hit.x, hit.y, hit.z}) / 32;
+            int walls = 0;
+            for (int axis = 0; axis < 3; ++axis)
+                walls +=
+                    std::abs(rays[i].origin[axis] + expected * rays[i].direction[axis]) > 1 - 2.5f * footprint
+                        ? 1
+                        : 0;
+            if (walls > 1) {
+                ++edges;
+                missed += t < INFINITY ? 0 : 1;
+                continue;
+            }
+            // Off the wall by half the thickness and by what the wall falls within a pixel and its neighbour.
+            const glm::vec3 place = glm::abs(rays[i].origin + t * rays[i].direction);
+            EXPECT_LT(std::abs(std::max({place.x, place.y, place.z}) - 1), 3 * footprint)
+                << view << " " << i << " " << t;
+        }
+        EXPECT_LT(edges, rays.size() / 3);
+        EXPECT_LT(missed, edges / 4) << view;
+    }
+}
+
+TEST_F(ABufferRays, SkippingAndStructureChangeNoHit) {
+    const Scene scene = loadScene("builtin:lattice?detail=0.3");
+    const std::vector<shared::HitRecord> expected =
+        hits(scene, "hemisphere.rays", {"abuffer.skipping=false", "store.structure=ll"}).abuffer;
+    size_t found = 0;
+    for (const shared::HitRecord& hit : expected) found += hit.t < INFINITY ? 1 : 0;
+    EXPECT_GT(found, expected.size() / 5);
+    for (const char* structure : {"sb", "ll", "dll", "llb", "dllb"})
+        for (const char* decoupled : {"true", "false"})
+            for (const int buckets : {1, 4, 16})
+                for (const char* skipping : {"true", "false"}) {
+                    const bool bucketed = std::string(structure).ends_with("lb");
+                    if (bucketed ? buckets == 1 : buckets > 1) continue;
+                    // What differs is the structure's own; that data lies elsewhere is seen with two of them.
+                    if (std::string(decoupled) == "false" && (bucketed || std::string(skipping) == "false"))
+                        continue;
+                    const auto given = hits(scene, "hemisphere.rays",
+                                            {fmt::format("abuffer.skipping={}", skipping),
+                                             fmt::format("store.structure={}", structure),
+                                             fmt::format("store.decoupled={}", decoupled),
+                                             fmt::format("store.buckets={}", buckets)})
+                                           .abuffer;
+                    size_t different = 0;
+                    for (size_t i = 0; i < expected.size(); ++i)
+                        different +=
+                            given[i].t == expected[i].t && given[i].source == expected[i].source ? 0 : 1;
+                    EXPECT_EQ(different, 0u) << structure << " decoupled " << decoupled << ", " << buckets
+                                             << " buckets, skipping " << skipping;
+                }
+}
+
+// Occlusion by the A-buffer beside the hierarchy's. A surface that is seen at a grazing angle changes its
+// depth by many footprints from pixel to pixel, and rays pass between its fragments (section 4.2,
+// limitations) unless they are thick: `hall` leaks at the default and is tight at eight footprints, where
+// what is thin casts too much.
+TEST_F(ABufferRays, LeaksBetweenFragmentsOfGrazingSurfacesClosesWithThickness) {
+    double last = 1;
+    for (const int thickness : {1, 2, 4, 8}) {
+        const Hits found = hits(loadScene("builtin:hall?detail=0.3"), "hemisphere.rays",
+                                {"bounds.side=128", fmt::format("abuffer.thickness={}", thickness)});
+        size_t rays = 0, missed = 0, invented = 0;
+        for (size_t i = 0; i < found.bvh.size(); ++i) {
+            if (found.bvh[i].weight == 0) continue; // a pixel without a surface
+            ++rays;
+            const bool exact = found.bvh[i].t < INFINITY, here = found.abuffer[i].t < INFINITY;
+            missed += exact && !here ? 1 : 0;
+            invented += !exact && here ? 1 : 0;
+        }
+        const double share = static_cast<double>(missed) / static_cast<double>(rays);
+        EXPECT_LT(share, last) << thickness;
+        EXPECT_EQ(invented, 0u) << thickness;
+        EXPECT_EQ(found.exhausted, 0);
+        last = share;
+    }
+    EXPECT_LT(last, 0.002);
+}
+
+TEST_F(ABufferRays, APlaneDoesNotHitItself) {
+    std::vector<glm::vec3> corners;
+    for (const glm::vec3& p : square()) corners.push_back(3.0f * glm::vec3(p.x, 0, -p.y));
+    const Hits found = hits(trianglesScene(corners), "hemisphere.rays");
+    size_t rays = 0, hit = 0;
+    for (size_t i = 0; i < found.bvh.size(); ++i) {
+        rays += found.bvh[i].weight > 0 ? 1 : 0;
+        hit += found.abuffer[i].t < INFINITY ? 1 : 0;
+    }
+    EXPECT_GT(rays, 300u);
+    EXPECT_LE(hit, rays / 100) << hit << " of " << rays;
+}
+
+} // namespace
+} // namespace kestrel::test
