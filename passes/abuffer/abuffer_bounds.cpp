@@ -29,7 +29,7 @@ Declaration ABufferBounds::declare(const World& world, const Inputs&, const Dema
     lists.side = cube ? (side > 0 ? side : static_cast<int>(world.size.height)) : 0;
     lists.nearPlane = static_cast<float>(nearPlane);
     if (!mainView && !cube)
-        declaration.problems.push_back({"", "sees nothing: it has neither the main view nor the cube"});
+        declaration.leftOut.push_back({"every view", "neither the frame nor the cube is asked for"});
 
     const bool nothing = world.facts.triangles == 0;
     const auto view = [&](const char* port, Desc desc, bool ofCube, bool seen) {

@@ -37,7 +37,8 @@ PassType ABufferStore::type() {
         .flag("decoupled", &ABufferStore::decoupled,
               "Keeps what shading needs apart from what traversal needs")
         .choice("allocation", &ABufferStore::allocation, {"counter", "counted"},
-                "Addresses from one counter, as in the paper, or from how many fragments each pixel has");
+                "Addresses from one counter, as in the paper (not with sb), or from how many fragments each "
+                "pixel has");
 }
 
 Declaration ABufferStore::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
@@ -50,12 +51,11 @@ Declaration ABufferStore::declare(const World& world, const Inputs& inputs, cons
     if (inputs["bounds"].desc.lists != inputs["cube_bounds"].desc.lists)
         declaration.problems.push_back({"cube_bounds", "is of another pass than `bounds`"});
     if (structure == Structure::SB && allocation == ABufferAllocation::Counter)
-        declaration.problems.push_back(
-            {"", "has structure sb, whose nodes lie side by side: it needs allocation counted"});
+        declaration.leftOut.push_back({"the one counter", "the nodes of sb lie side by side"});
 
     const std::uint64_t pixels = abufferPixels(lists, world.size);
     const std::uint64_t capacity = std::max(demand.grown("nodes"), nodesPerPixel * pixels);
-    const bool nothing = world.facts.triangles == 0;
+    const bool nothing = world.facts.triangles == 0 || pixels == 0;
     const auto buffer = [&](const char* port, std::uint64_t words) -> Output& {
         const std::uint64_t bytes = std::max<std::uint64_t>(words, 1) * 4;
         if (static_cast<std::int64_t>(words) > world.capabilities.maxTextureBufferTexels)
@@ -70,11 +70,11 @@ Declaration ABufferStore::declare(const World& world, const Inputs& inputs, cons
         declaration.outputs.push_back({.port = port, .desc = desc});
         return declaration.outputs.back();
     };
-    const bool counted = allocation == ABufferAllocation::Counted;
+    const bool counted = isCounted();
     const glm::vec4 none(0);
     Output& words = buffer("pixels", pixels * static_cast<std::uint64_t>(abufferPixelWords(lists)));
     if (nothing) words.constant = none;
-    if (!counted && !bucketed) words.clear = none;
+    if (!nothing && !counted && !bucketed) words.clear = none;
     Output& nodes = buffer("nodes", capacity * static_cast<std::uint64_t>(abufferNodeWords(lists)));
     if (nothing) nodes.constant = none;
     if (!nothing) {
@@ -85,14 +85,15 @@ Declaration ABufferStore::declare(const World& world, const Inputs& inputs, cons
     if (nothing || !decoupled) data.constant = none;
     Output& segments = buffer("segments", counted ? 2 * pixels : 0);
     if (nothing || !counted) segments.constant = none;
-    declaration.outputs.push_back({.port = "counter", .desc = Desc::buffer(4), .clear = none});
 
     declaration.depends = Causes::Camera | Causes::Cut | Causes::Geometry | Causes::Transforms |
                           Causes::Materials | Causes::Properties | Causes::Size;
     if (nothing) {
-        declaration.leftOut.push_back({"drawing", "the scene has no triangles"});
+        declaration.leftOut.push_back(
+            {"drawing", pixels == 0 ? "no view is asked for" : "the scene has no triangles"});
         return declaration;
     }
+    declaration.outputs.push_back({.port = "counter", .desc = Desc::buffer(4), .clear = none});
     if (!world.facts.hasMasked)
         declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
     if (counted || bucketed) {
@@ -132,7 +133,7 @@ std::vector<Step> ABufferStore::beginSteps(const Defines& given, const FragmentL
     };
     const Use words{.port = "pixels", .access = Access::Image, .write = true};
     const Use runsWritten{.port = "runs", .access = Access::Image, .write = true};
-    if (allocation == ABufferAllocation::Counter) return {stepOf("ranges", "RANGES", true, {words})};
+    if (!isCounted()) return {stepOf("ranges", "RANGES", true, {words})};
     return {stepOf("sum", "SUM", true, {runsWritten}),
             stepOf("scan", "SCAN", false,
                    {runsWritten, {.port = "counter", .access = Access::Storage, .write = true}}),
@@ -151,7 +152,7 @@ Step ABufferStore::drawStep(const World& world, const FragmentLists& lists, bool
     step.defines.merge(abufferDefines(lists, world.size));
     if (ofCube) step.defines.emplace("CUBE", "1");
     if (lists.decoupled) step.uses.push_back({.port = "data", .access = Access::Image, .write = true});
-    if (allocation == ABufferAllocation::Counter) {
+    if (!isCounted()) {
         step.defines.emplace("COUNTER", "1");
         step.defines.emplace("VIEW_BLOCK", "PixelsView");
         step.uses.push_back({.port = "pixels", .access = Access::Image, .write = true});

@@ -22,6 +22,9 @@ public:
     ABufferAllocation allocation = ABufferAllocation::Counted;
 
 private:
+    [[nodiscard]] bool isCounted() const {
+        return allocation == ABufferAllocation::Counted || structure == FragmentLists::Structure::SB;
+    }
     [[nodiscard]] std::vector<Step> beginSteps(const Defines& defines, const FragmentLists& lists,
                                                std::uint64_t pixels) const;
     [[nodiscard]] Step drawStep(const World& world, const FragmentLists& lists, bool ofCube) const;

@@ -200,7 +200,7 @@ float M(leaves)(M(ViewRay) ray, float nearPlane) {
 }
 
 // Where a ray goes decides between faces, close to the eye: by less than what their frusta overlap there.
-const float M(onward) = 0.5 * NEAR_PLANE;
+float M(onward)() { return 0.5 * NEAR_PLANE; }
 
 struct M(March) {
     vec3 origin;
@@ -271,7 +271,7 @@ void M(marchOn)(inout M(March) march) {
         }
         if (march.t >= march.tMax || march.t == rayInfinity) return;
 #if SIDE > 0
-        vec3 place = march.origin + march.t * march.direction - M(view).position.xyz + M(onward) * march.direction;
+        vec3 place = march.origin + march.t * march.direction - M(view).position.xyz + M(onward)() * march.direction;
         if (march.view > 0u) {
             uint axis = (march.view - 1u) / 2u;
             if (axis == 0u) place.x = 0.0;
@@ -287,7 +287,7 @@ void M(marchOn)(inout M(March) march) {
 }
 
 bool M(traverse)(Ray ray, out M(March) march) {
-    vec3 seen = ray.origin + (ray.tMin + M(onward)) * ray.direction - M(view).position.xyz;
+    vec3 seen = ray.origin + (ray.tMin + M(onward)()) * ray.direction - M(view).position.xyz;
     march.view = 1u + abufferFaceOf(seen);
 #if MAIN_PIXELS > 0
 #if SIDE > 0
