@@ -53,9 +53,16 @@ sanitize)
     # What needs no GL: one program a folder of the framework. The packaged libraries are not instrumented.
     tests=(core image scene reference shader graph draw execute measure)
     build "$root/build-sanitize" -DKESTREL_CONFIG=sanitize -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -- "${tests[@]/#/test_}"
-    for test in "${tests[@]}"; do
-        UBSAN_OPTIONS=print_stacktrace=1 "$root/build-sanitize/bin/test_$test" --gtest_brief=1 "$@"
-    done
+    # One after the other on each core; what a program says is told if it fails.
+    check() {
+        local said
+        said=$("$@" --gtest_brief=1 2>&1) || { printf '%s\n' "$said" && return 1; }
+        printf '%s: %s\n' "$(basename "$1")" "$(grep -a '^\[  PASSED' <<<"$said")"
+    }
+    export -f check
+    export UBSAN_OPTIONS=print_stacktrace=1
+    printf '%s\0' "${tests[@]/#/$root/build-sanitize/bin/test_}" |
+        xargs -0 -P "$(nproc)" -I PROGRAM bash -c 'check "$@"' check PROGRAM "$@"
     ;;
 strict)
     build "$root/build-strict" -DKESTREL_UNITY=OFF -DKESTREL_PCH=OFF -- kestrel_stamp kestrel_glad

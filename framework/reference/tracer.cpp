@@ -131,10 +131,10 @@ struct ReferenceTracer::State {
         const GeometryHandle range(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
         rtcSetGeometryBuffer(range.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices, 0,
                              sizeof(glm::vec3), geometry.positions.size());
-        void* indices = rtcSetNewGeometryBuffer(range.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+        void* corners = rtcSetNewGeometryBuffer(range.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                 3 * sizeof(std::uint32_t), last - first);
         throwIfFailed(device.get(), "allocating");
-        std::memcpy(indices, &geometry.indices[3 * static_cast<size_t>(first)],
+        std::memcpy(corners, &geometry.indices[3 * static_cast<size_t>(first)],
                     3 * sizeof(std::uint32_t) * (last - first));
         if (first == firstMaskedTriangle(geometry)) {
             rtcSetGeometryUserData(range.get(), this);

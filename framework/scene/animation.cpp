@@ -121,8 +121,8 @@ double Scene::duration() const {
         for (const AnimationChannel& channel : animation.channels)
             if (!channel.times.empty()) last = std::max(last, channel.times.back());
     double end = double(last);
-    for (const Camera& camera : cameras)
-        if (!camera.path.empty()) end = std::max(end, camera.path.back().time);
+    for (const Camera& each : cameras)
+        if (!each.path.empty()) end = std::max(end, each.path.back().time);
     return end;
 }
 

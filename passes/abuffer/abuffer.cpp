@@ -1,5 +1,4 @@
 #include "abuffer.h"
-#include "draw/material_defines.h"
 #include "execute/commands.h"
 #include "execute/exhausted_rays.h"
 #include "views.h"

@@ -1,6 +1,9 @@
 #include "abuffer_store.h"
 #include "draw/material_defines.h"
 #include "views.h"
+#include <algorithm>
+#include <fmt/format.h>
+#include <string_view>
 
 namespace kestrel {
 

@@ -4,6 +4,7 @@
 #include "shipped_fixture.h"
 #include "support/message.h"
 #include <bit>
+#include <gmock/gmock.h>
 
 namespace kestrel::test {
 namespace {
