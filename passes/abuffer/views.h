@@ -17,7 +17,7 @@ namespace kestrel {
 // next and previous node, and where data is not decoupled the triangle.
 [[nodiscard]] int abufferNodeWords(const FragmentLists& lists);
 
-// What shaders of the A-buffer need to know of it (shaders/abuffer/views.glsl, lists.glsl).
+// What shaders of the A-buffer need to know of it (shaders/abuffer/lists.glsl).
 [[nodiscard]] Defines abufferDefines(const FragmentLists& lists, const Extent& frame);
 
 // All triangles, as rays meet them: passes draw both sides of each.
