@@ -37,9 +37,10 @@ void Executor::checkIterations() {
         IterationsBlock block;
         std::memcpy(&block, bytes.data() + i * static_cast<size_t>(iterationsStride), sizeof(block));
         if (block.exhausted == 0) continue;
-        problems.push_back({{},
-                            fmt::format("{}: the loops of {} invocations made more than {} iterations (the most: {})",
-                                        labels_[i], block.exhausted, maxIterations, block.maximum)});
+        problems.push_back(
+            {{},
+             fmt::format("{}: the loops of {} invocations made more than {} iterations (the most: {})",
+                         labels_[i], block.exhausted, maxIterations, block.maximum)});
     }
     if (!problems.empty()) throw Error(ExitStatus::MeasureFailed, std::move(problems));
 }
