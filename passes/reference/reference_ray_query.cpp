@@ -12,9 +12,7 @@ constexpr size_t raysPerBatch = 256 * tracePacket;
 
 // As in Bvh.
 TraceRay traceRay(const shared::RayRecord& record) {
-    const glm::vec3 origin = record.origin;
-    const float largest = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
-    return {.origin = origin + record.normal * shared::rayStart(0, largest, 0),
+    return {.origin = shared::offFace(record.origin, record.normal),
             .direction = record.direction,
             .tMin = record.tMin,
             .tMax = record.tMax};

@@ -1,22 +1,16 @@
-// The module `tracer` through an A-buffer: a ray goes from pixel to pixel of a view (2D DDA) and meets the fragments whose depth
-// lies in the interval of depths that it has in the pixel, then goes on in the next view (Vardis, Vasilakis, Papaioannou 2016,
-// section 3.4). What differs from the paper, and why:
+// The module `tracer` through the fragments of an A-buffer: a ray goes from pixel to pixel and from view to view
+// (abuffer/march.glsl) and meets the fragments whose depth lies in the interval of depths that it has in the pixel (Vardis,
+// Vasilakis, Papaioannou 2016, section 3.4). The interval is half open, and widened on both sides by half of THICKNESS pixel
+// footprints: a surface is kept at the depth of its pixel's centre, and a ray that crosses it elsewhere in the pixel would pass
+// before it in one pixel and behind it in the next. Skipping tests the widened interval, so that it changes no hit.
 //
-//   - A ray passes from pixel to pixel at the times at which it meets the planes through the eye and the pixels' borders, each
-//     worked out by itself and never summed up: nothing drifts, and tMin and tMax are times too.
-//   - The interval is half open, and widened on both sides by half of THICKNESS pixel footprints: a surface is kept at the
-//     depth of its pixel's centre, and a ray that crosses it elsewhere in the pixel would pass before it in one pixel and
-//     behind it in the next. Skipping tests the widened interval, so that it changes no hit.
-//   - Views are left by edge connectivity in one form for all borders, the near plane too: the axis of the face that is left
-//     counts no more, and the largest of the other components of the place says which face comes next.
-//
-// A ray that has passed STEPS pixels is exhausted: it ends there as if it had hit something, and is counted with COUNT_EXHAUSTED.
+// Once an invocation has spent BUDGET iterations, whatever rays it traced, the ray is exhausted: it ends there as if it had hit
+// something, and is counted with COUNT_EXHAUSTED.
 #include "lib/tracer.glsl"
 #include "lib/scene.glsl"
 #include "lib/iterations.glsl"
-#include "shared/ray.h"
-#include "shared/view.h"
 #include "abuffer/lists.glsl"
+#include "abuffer/march.glsl"
 
 #ifdef COUNT_EXHAUSTED
 layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
@@ -44,6 +38,9 @@ layout(r32ui) uniform readonly uimageBuffer M(data);
 #endif
 layout(std140) uniform M(PixelsView) { ViewData M(view); };
 
+// Iterations of this invocation in all, whatever rays it traces.
+uint M(spent) = 0u;
+
 float M(depthOf)(uint node) { return uintBitsToFloat(imageLoad(M(nodes), NODE_AT(node, 0)).r); }
 uint M(nextOf)(uint node) { return imageLoad(M(nodes), NODE_AT(node, 1)).r; }
 #ifdef TWO_WAYS
@@ -57,6 +54,7 @@ uint M(inList)(uint head, uint tail, float low, float high, bool away) {
     if (!away) {
         for (uint node = tail; node != 0u; node = M(previousOf)(node)) {
             ITERATION;
+            ++M(spent);
             float z = M(depthOf)(node);
             if (z < low) break;
             if (z < high) {
@@ -69,6 +67,7 @@ uint M(inList)(uint head, uint tail, float low, float high, bool away) {
 #endif
     for (uint node = head; node != 0u; node = M(nextOf)(node)) {
         ITERATION;
+        ++M(spent);
         float z = M(depthOf)(node);
         if (z >= high) break;
         if (z >= low) {
@@ -127,6 +126,7 @@ uint M(inPixel)(int pixel, float low, float high, bool away) {
     int buckets = to - from + 1;
     for (int i = 0; i < buckets && found == 0u; ++i) {
         ITERATION;
+        ++M(spent);
         int bucket = away ? from + i : to - i;
         uint head = imageLoad(M(pixels), words + HEAD_WORD(bucket)).r;
 #ifdef TWO_WAYS
@@ -151,186 +151,74 @@ uint M(inPixel)(int pixel, float low, float high, bool away) {
 #endif
 }
 
-// ---- views
+// ---- rays
 
-// A ray in a view: x, y, w of clip space and the depth along the view's axis, each at time 0 and what a unit of time adds.
-struct M(ViewRay) {
-    vec4 at;
-    vec4 add;
-};
-
-M(ViewRay) M(inView)(uint view, vec3 origin, vec3 direction) {
-    if (view == 0u) {
-        vec4 at = M(view).viewProjection * vec4(origin, 1.0);
-        vec4 add = M(view).viewProjection * vec4(direction, 0.0);
-        return M(ViewRay)(vec4(at.xyw, -(M(view).view * vec4(origin, 1.0)).z),
-                          vec4(add.xyw, -(M(view).view * vec4(direction, 0.0)).z));
-    }
-    vec3 at = abufferFaceAxes(view - 1u, origin - M(view).position.xyz);
-    vec3 add = abufferFaceAxes(view - 1u, direction);
-    at.z += NEAR_PLANE;
-    return M(ViewRay)(at.xyzz, add.xyzz);
-}
-
-// Pixels of a view, and the size of a pixel at depth 1 or, of an orthographic frame, at any depth.
-ivec2 M(sizeOf)(uint view) { return view == 0u ? ivec2(M(view).size) : ivec2(SIDE); }
-float M(footprint)(uint view, float depth) {
-    if (view == 0u) {
-        float size = max(length(M(view).rightward.xyz), length(M(view).upward.xyz));
-        return M(view).position.w != 0.0 ? size : size * depth;
-    }
-    return 2.0 / float(max(SIDE, 1)) * depth;
-}
-
-float M(nearOf)(uint view) { return view == 0u ? M(view).nearPlane : NEAR_PLANE; }
-
-bool M(contains)(M(ViewRay) ray, float t, float nearPlane) {
-    vec4 p = ray.at + t * ray.add;
-    return abs(p.x) <= p.z && abs(p.y) <= p.z && p.w >= nearPlane;
-}
-
-// The time at which the ray leaves the view, after which it is on the wrong side of one of its planes.
-float M(leaves)(M(ViewRay) ray, float nearPlane) {
-    // Each is at least 0 within.
-    vec4 sides = vec4(ray.at.z - ray.at.x, ray.at.z + ray.at.x, ray.at.z - ray.at.y, ray.at.z + ray.at.y);
-    vec4 grow = vec4(ray.add.z - ray.add.x, ray.add.z + ray.add.x, ray.add.z - ray.add.y, ray.add.z + ray.add.y);
-    vec4 times = mix(vec4(rayInfinity), -sides / grow, lessThan(grow, vec4(0.0)));
-    float byNear = ray.add.w < 0.0 ? (nearPlane - ray.at.w) / ray.add.w : rayInfinity;
-    return min(min(min(times.x, times.y), min(times.z, times.w)), byNear);
-}
-
-// Where a ray goes decides between faces, close to the eye: by less than what their frusta overlap there.
-float M(onward)() { return 0.5 * NEAR_PLANE; }
-
-struct M(March) {
-    vec3 origin;
-    vec3 direction;
-    float tMax;
+struct M(Found) {
+    uint node; // 0: nothing, or the ray was exhausted
     float t;
-    uint view; // where it is
-    int views; // that it may still enter
-    bool exhausted;
-    // What was hit; node 0: nothing.
-    uint node;
-    float hitTime;
     float error;
+    uint view;
+    bool exhausted;
 };
 
-// Goes on until something is hit, the ray ends or is exhausted.
-void M(marchOn)(inout M(March) march) {
-    march.exhausted = false;
-    int steps = 0;
+// What the ray meets first in its pixel.
+bool M(meets)(ABufferMarch march, inout M(Found) found) {
+    float low = min(march.from, march.to);
+    float high = max(march.from, march.to);
+    float pad = 0.5 * THICKNESS * abufferFootprint(M(view), ABUFFER_SHAPE, march.view, low);
+    found.node = M(inPixel)(ABUFFER_PIXEL(march.view, march.pixel), low - pad, high + pad, march.ray.add.w > 0.0);
+    if (found.node == 0u) return false;
+    float z = M(depthOf)(found.node);
+    float part = march.to != march.from ? clamp((z - march.from) / (march.to - march.from), 0.0, 1.0) : 0.5;
+    found.t = march.next < rayInfinity ? mix(march.t, march.next, part)
+                                       : march.t + max(z - march.from, 0.0) / abs(march.ray.add.w);
+    found.error = 0.5 * abufferFootprint(M(view), ABUFFER_SHAPE, march.view, z) + pad;
+    found.view = march.view;
+    return true;
+}
+
+bool M(traverse)(Ray ray, out M(Found) found) {
+    vec3 fromEye = ray.origin - M(view).position.xyz;
+    uint view = abufferViewAt(M(view), ABUFFER_SHAPE, fromEye, ray.direction, ray.tMin);
+    // Off the surface by what its fragments may be off their places.
+    float depth = abufferSeen(M(view), NEAR_PLANE, view, fromEye, 1.0).w;
+    fromEye += ray.normal * (OFFSET * abufferFootprint(M(view), ABUFFER_SHAPE, view, max(depth, 0.0)));
+    ABufferMarch march = abufferMarch(M(view), ABUFFER_SHAPE, view, fromEye, ray.direction, ray.tMin, ray.tMax);
+    found = M(Found)(0u, ray.tMax, 0.0, 0u, false);
     while (march.views > 0) {
         ITERATION;
-        M(ViewRay) ray = M(inView)(march.view, march.origin, march.direction);
-        ivec2 size = M(sizeOf)(march.view);
-        float end = min(march.tMax, M(leaves)(ray, M(nearOf)(march.view)));
-        vec4 start = ray.at + march.t * ray.add;
-        ivec2 pixel = clamp(ivec2(floor((start.xy / start.z * 0.5 + 0.5) * vec2(size))), ivec2(0), size - 1);
-        // Which way the ray goes on the view's plane: the sign holds for all of it.
-        ivec2 way = ivec2(sign(ray.add.xy * ray.at.z - ray.at.xy * ray.add.z));
-        bool away = ray.add.w > 0.0;
-        bool left = march.t >= end;
-        while (!left) {
+        ++M(spent);
+        abufferEnter(march, M(view), ABUFFER_SHAPE);
+        while (march.inside) {
             ITERATION;
-            if (steps >= STEPS) {
-                march.exhausted = true;
-                return;
-            }
-            ++steps;
-            vec2 border = 2.0 * vec2(pixel + max(way, ivec2(0))) / vec2(size) - 1.0;
-            // A ray that comes to an end at its vanishing point before the border never meets it.
-            vec2 towards = ray.add.xy - border * ray.add.z;
-            vec2 times = mix(vec2(rayInfinity), (border * ray.at.z - ray.at.xy) / towards, greaterThan(towards * vec2(way), vec2(0.0)));
-            float next = max(march.t, min(min(times.x, times.y), end));
-            float from = ray.at.w + march.t * ray.add.w;
-            // A ray without end goes out of every interval of depths.
-            float to = next < rayInfinity ? ray.at.w + next * ray.add.w : (ray.add.w == 0.0 ? from : (away ? 3.0e38 : -3.0e38));
-            float low = min(from, to);
-            float high = max(from, to);
-            float pad = 0.5 * THICKNESS * M(footprint)(march.view, low);
-            uint node = M(inPixel)(ABUFFER_PIXEL(march.view, pixel), low - pad, high + pad, away);
-            if (node != 0u) {
-                float z = M(depthOf)(node);
-                float part = to != from ? clamp((z - from) / (to - from), 0.0, 1.0) : 0.5;
-                march.node = node;
-                march.hitTime = next < rayInfinity ? mix(march.t, next, part) : march.t + max(z - from, 0.0) / abs(ray.add.w);
-                march.error = 0.5 * M(footprint)(march.view, z) + pad;
-                return;
-            }
-            march.t = next;
-            if (next >= end) {
-                left = true;
-            } else if (times.x <= times.y) {
-                pixel.x += way.x;
-                left = pixel.x < 0 || pixel.x >= size.x;
-            } else {
-                pixel.y += way.y;
-                left = pixel.y < 0 || pixel.y >= size.y;
-            }
+            found.exhausted = ++M(spent) > uint(BUDGET);
+            if (found.exhausted) break;
+            abufferAhead(march, 0);
+            if (M(meets)(march, found)) break;
+            abufferCross(march);
         }
-        if (march.t >= march.tMax || march.t == rayInfinity) return;
-#if SIDE > 0
-        vec3 place = march.origin + march.t * march.direction - M(view).position.xyz + M(onward)() * march.direction;
-        if (march.view > 0u) {
-            uint axis = (march.view - 1u) / 2u;
-            if (axis == 0u) place.x = 0.0;
-            if (axis == 1u) place.y = 0.0;
-            if (axis == 2u) place.z = 0.0;
-        }
-        march.view = 1u + abufferFaceOf(place);
-        --march.views;
-#else
-        return;
-#endif
+        if (found.exhausted || found.node != 0u) break;
+        abufferTurn(march, ABUFFER_SHAPE);
     }
-}
-
-bool M(traverse)(Ray ray, out M(March) march) {
-    vec3 seen = ray.origin + (ray.tMin + M(onward)()) * ray.direction - M(view).position.xyz;
-    march.view = 1u + abufferFaceOf(seen);
-#if MAIN_PIXELS > 0
-#if SIDE > 0
-    if (M(contains)(M(inView)(0u, ray.origin + ray.tMin * ray.direction, ray.direction), 0.0, M(view).nearPlane)) march.view = 0u;
-#else
-    march.view = 0u;
-#endif
-#endif
-    // Off the surface by what its fragments may be off their places.
-    float depth = M(inView)(march.view, ray.origin, ray.direction).at.w;
-    march.origin = ray.origin + ray.normal * (OFFSET * M(footprint)(march.view, max(depth, 0.0)));
-    march.direction = ray.direction;
-    march.tMax = ray.tMax;
-    march.t = ray.tMin;
-    march.views = 8;
-    march.node = 0u;
-    march.hitTime = ray.tMax;
-    march.error = 0.0;
-#if SIDE == 0
-    // Outside the only view there is nothing to be hit.
-    M(ViewRay) inMain = M(inView)(0u, march.origin, march.direction);
-    if (!M(contains)(inMain, march.t, M(view).nearPlane)) march.views = 0;
-#endif
-    M(marchOn)(march);
 #ifdef COUNT_EXHAUSTED
     atomicAdd(M(exhausted)[0], 1u);
-    if (march.exhausted) atomicAdd(M(exhausted)[1], 1u);
+    if (found.exhausted) atomicAdd(M(exhausted)[1], 1u);
 #endif
-    if (march.exhausted) march.hitTime = march.t;
-    return march.node != 0u || march.exhausted;
+    if (found.exhausted) found.t = march.t;
+    return found.node != 0u || found.exhausted;
 }
 
 bool M(anyHit)(Ray ray) {
-    M(March) march;
-    return M(traverse)(ray, march);
+    M(Found) found;
+    return M(traverse)(ray, found);
 }
 
 #if defined(REQUESTS_CLOSEST) || defined(REQUESTS_SURFACE)
 bool M(closestHit)(Ray ray, out Hit hit) {
-    M(March) march;
-    bool found = M(traverse)(ray, march);
-    hit = found ? Hit(march.hitTime, march.error, march.view, uvec2(march.node, 0u)) : noHit;
-    return found;
+    M(Found) found;
+    bool met = M(traverse)(ray, found);
+    hit = met ? Hit(found.t, found.error, found.view, uvec2(found.node, 0u)) : noHit;
+    return met;
 }
 #endif
 

@@ -10,12 +10,6 @@
 layout(rgba32ui) uniform readonly uimageBuffer M(nodes);
 layout(rgba32ui) uniform readonly uimageBuffer M(triangles);
 
-// The consumer moved the origin off by what it does not know exactly (lib/face.glsl); here by the rounding of that.
-vec3 M(startOf)(Ray ray) {
-    vec3 extent = abs(ray.origin);
-    return ray.origin + ray.normal * rayStart(0.0, max(extent.x, max(extent.y, extent.z)), 0.0);
-}
-
 void M(aim)(inout Ray ray) {}
 
 void M(triangleAt)(uint index, out vec3 p0, out vec3 p1, out vec3 p2, out uvec3 ids) {
@@ -52,7 +46,7 @@ void M(children)(uint node, vec3 origin, vec3 inverse, float tMin, float tMax, o
 // triangles tested in another: on a driver that runs both sides of every branch for all lanes, a loop is the only thing
 // that can be left, and a triangle test in the walk would be paid at every node.
 bool M(traverse)(Ray ray, bool stopAtFirst, out float t, out vec2 barycentrics, out uint triangle) {
-    vec3 origin = M(startOf)(ray);
+    vec3 origin = offFace(ray.origin, ray.normal);
     vec3 inverse = inverseDirection(ray.direction);
     TriangleRay sheared = triangleRay(origin, ray.direction);
     uint references[bvhStackSize];
@@ -138,7 +132,7 @@ Surface M(surface)(Ray ray, Hit hit) { return sceneSurface(hit.id.x, unpackUnorm
 #ifdef PROVIDES_HITS
 
 void M(all)(Ray ray) {
-    vec3 origin = M(startOf)(ray);
+    vec3 origin = offFace(ray.origin, ray.normal);
     vec3 inverse = inverseDirection(ray.direction);
     TriangleRay sheared = triangleRay(origin, ray.direction);
     uint references[bvhStackSize];

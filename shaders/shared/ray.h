@@ -16,6 +16,13 @@ inline float rayStart(float distance, float largest, float reach) {
     return max(3.0517578e-5f * distance, max(4.7683716e-7f * largest, 9.5367432e-7f * reach)); // 2^-15, 2^-21, 2^-20
 }
 
+// Where a ray starts whose origin is already off its face (with this normal, zero if there is none) by what the point's own
+// place is uncertain by: off it by the rounding of that too.
+inline vec3 offFace(vec3 origin, vec3 normal) {
+    const vec3 extent = abs(origin);
+    return origin + normal * rayStart(0.0f, max(extent.x, max(extent.y, extent.z)), 0.0f);
+}
+
 // How far the corners lie off a point of their plane, each component counted by the normal's: 0 along an axis that the
 // normal is perpendicular to, where no rounding moves the plane.
 inline float faceReach(vec3 normal, vec3 point, vec3 p0, vec3 p1, vec3 p2) {
