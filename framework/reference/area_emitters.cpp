@@ -74,8 +74,18 @@ glm::vec3 meanEmission(const SurfaceSampler& surfaces, std::uint32_t triangle) {
     return sum / static_cast<float>(count);
 }
 
-void addEmissiveTriangles(std::vector<AreaEmitter>& emitters, std::span<const LightState> areaLights,
-                          const Geometry& geometry, const Scene& scene) {
+std::vector<LightState> areaLightsOf(std::span<const LightState> lights) {
+    std::vector<LightState> area;
+    for (const LightState& light : lights)
+        if (light.kind == LightKind::Rectangle || light.kind == LightKind::Sphere) area.push_back(light);
+    return area;
+}
+
+// Hands each triangle of an emissive material to `use` as an emitter, and whether it is an area light's
+// panel.
+template<class Use>
+void forEachEmissiveTriangle(std::span<const LightState> areaLights, const Geometry& geometry,
+                             const Scene& scene, const Use& use) {
     const std::vector<Material> materials = flattenedMaterials(scene);
     const SurfaceSampler surfaces(geometry, scene);
     for (std::uint32_t triangle = 0; triangle < geometry.triangleCount(); ++triangle) {
@@ -94,7 +104,7 @@ void addEmissiveTriangles(std::vector<AreaEmitter>& emitters, std::span<const Li
         const bool panel = std::any_of(areaLights.begin(), areaLights.end(), [&](const LightState& light) {
             return isPanelOf(light, corners, emitter.radiance);
         });
-        if (!panel) emitters.push_back(emitter);
+        use(triangle, emitter, panel);
     }
 }
 
@@ -143,14 +153,14 @@ EmitterSample sampleFlat(const AreaEmitter& flat, const glm::vec3& position, con
 
 std::vector<AreaEmitter> areaEmitters(std::span<const LightState> lights, const Geometry& geometry,
                                       const Scene& scene, bool emissiveMeshes) {
-    std::vector<LightState> areaLights;
+    const std::vector<LightState> areaLights = areaLightsOf(lights);
     std::vector<AreaEmitter> emitters;
-    for (const LightState& light : lights) {
-        if (light.kind != LightKind::Rectangle && light.kind != LightKind::Sphere) continue;
-        areaLights.push_back(light);
-        emitters.push_back(emitterOf(light));
-    }
-    if (emissiveMeshes) addEmissiveTriangles(emitters, areaLights, geometry, scene);
+    for (const LightState& light : areaLights) emitters.push_back(emitterOf(light));
+    if (emissiveMeshes)
+        forEachEmissiveTriangle(areaLights, geometry, scene,
+                                [&](std::uint32_t, const AreaEmitter& emitter, bool panel) {
+                                    if (!panel) emitters.push_back(emitter);
+                                });
 
     std::vector<double> weights;
     double total = 0;
@@ -176,6 +186,17 @@ std::vector<AreaEmitter> areaEmitters(std::span<const LightState> lights, const 
         chosen.back().upper = 1;
     }
     return chosen;
+}
+
+std::vector<bool> areaLightPanels(std::span<const LightState> lights, const Geometry& geometry,
+                                  const Scene& scene) {
+    std::vector<bool> panels(geometry.triangleCount(), false);
+    const std::vector<LightState> areaLights = areaLightsOf(lights);
+    if (!areaLights.empty())
+        forEachEmissiveTriangle(
+            areaLights, geometry, scene,
+            [&](std::uint32_t triangle, const AreaEmitter&, bool panel) { panels[triangle] = panel; });
+    return panels;
 }
 
 EmitterSample sampleEmitters(std::span<const AreaEmitter> emitters, const glm::vec3& position,

@@ -29,6 +29,11 @@ struct AreaEmitter {
 std::vector<AreaEmitter> areaEmitters(std::span<const LightState> lights, const Geometry& geometry,
                                       const Scene& scene, bool emissiveMeshes);
 
+// Of each triangle whether it is such a panel: where area lights are sampled, it must not shine a second
+// time.
+std::vector<bool> areaLightPanels(std::span<const LightState> lights, const Geometry& geometry,
+                                  const Scene& scene);
+
 // A point on the emitters, seen from a surface.
 struct EmitterSample {
     glm::vec3 direction{0}; // unit, towards the emitter

@@ -1,5 +1,6 @@
 #include "reference/surface_sample.h"
 #include "reference/texture_sample.h"
+#include "shared/bsdf.h"
 #include "shared/ray.h"
 
 namespace kestrel {
@@ -88,7 +89,8 @@ SurfaceSample SurfaceSampler::at(const TraceHit& hit, const glm::vec3& direction
     glm::vec4 tangent = interpolated(&VertexAttributes::tangent);
     tangent.w = geometry_.attributes[corner[0]].tangent.w; // the same at all three, or meaningless in between
     sample.normal = bent(material, hit, sample.normal, tangent);
-    if (glm::dot(sample.faceNormal, direction) > 0) {
+    const bool front = !(glm::dot(sample.faceNormal, direction) > 0);
+    if (!front) {
         sample.faceNormal = -sample.faceNormal;
         sample.normal = -sample.normal;
     }
@@ -101,6 +103,9 @@ SurfaceSample SurfaceSampler::at(const TraceHit& hit, const glm::vec3& direction
     const glm::vec4 rough = look(material.metallicRoughnessTexture, false);
     sample.roughness = material.roughness * rough.g;
     sample.metallic = material.metallic * rough.b;
+    sample.transmission = material.transmission;
+    sample.eta = shared::relativeIndex(material.ior, front);
+    sample.unlit = material.unlit;
     return sample;
 }
 

@@ -14,7 +14,9 @@ struct SurfaceSample {
     glm::vec3 albedo{1};                             // linear base colour: factor, texture, vertex colour
     glm::vec3 emission{0};                           // linear radiance: factor, texture
     float metallic = 0, roughness = 1;               // factors times texture
-    float reach = 0;                                 // faceReach() of shared/ray.h
+    float transmission = 0, eta = 1.5f;              // eta: relativeIndex() of shared/bsdf.h, from that side
+    bool unlit = false;
+    float reach = 0; // faceReach() of shared/ray.h
 };
 
 // What shaders/lib/material.glsl tells of a hit. Textures are read at their finest level, with the filter of

@@ -34,6 +34,12 @@ const Target targets[] = {
     {"material", "OUT_MATERIAL", Format::RGBA16F, content::material,
      "Roughness, metallic, and in z whether the surface is unlit"},
     {"emission", "OUT_EMISSION", Format::RGBA16F, content::colour, "Linear emitted radiance"},
+    {"refraction",
+     "OUT_REFRACTION",
+     Format::RG16F,
+     {.channels = 2},
+     "Share of the light that passes (KHR_materials_transmission), and the index of refraction behind the "
+     "surface over that before it, as the eye sees it. 0 where nothing is"},
     {"motion", "OUT_MOTION", Format::RG32F, content::motion,
      "From this pixel to where its surface was in the last frame, in pixels"},
     {"coverage", "OUT_COVERAGE", Format::R8, {.channels = 1}, "1 where there is geometry, else 0"},
@@ -103,7 +109,8 @@ Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& de
             steps.back().uses.push_back({.port = target.port, .access = Access::Attachment, .write = true});
             material |= std::string_view(target.define) == "OUT_ALBEDO" ||
                         std::string_view(target.define) == "OUT_MATERIAL" ||
-                        std::string_view(target.define) == "OUT_EMISSION";
+                        std::string_view(target.define) == "OUT_EMISSION" ||
+                        std::string_view(target.define) == "OUT_REFRACTION";
         }
         declaration.outputs.push_back(std::move(output));
     }

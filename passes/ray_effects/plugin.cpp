@@ -3,6 +3,7 @@
 #include "hemisphere_rays.h"
 #include "hit_count.h"
 #include "indirect_diffuse.h"
+#include "path_trace.h"
 #include "ray_query.h"
 #include "soft_shadow.h"
 
@@ -11,6 +12,7 @@ KESTREL_PLUGIN {
     registry.add(kestrel::HemisphereRays::type());
     registry.add(kestrel::HitCount::type());
     registry.add(kestrel::IndirectDiffuse::type());
+    registry.add(kestrel::PathTrace::type());
     registry.add(kestrel::RayQuery::type());
     registry.add(kestrel::SoftShadow::type());
 }

@@ -69,12 +69,16 @@ Image facesOf(const Step& step, Commands& commands, const Image& position, const
     return faces;
 }
 
+Image withOpaqueAlpha(const Image& colour) {
+    Image result(colour.width, colour.height, 4, 1.0f);
+    for (int y = 0; y < colour.height; ++y)
+        for (int x = 0; x < colour.width; ++x)
+            for (int k = 0; k < 3; ++k) result.at(x, y, k) = colour.at(x, y, k);
+    return result;
+}
+
 void finishGather(Commands& commands, const GatherResult& result) {
-    Image light(result.light.width, result.light.height, 4, 1.0f);
-    for (int y = 0; y < light.height; ++y)
-        for (int x = 0; x < light.width; ++x)
-            for (int k = 0; k < 3; ++k) light.at(x, y, k) = result.light.at(x, y, k);
-    commands.uploadImage("result", light);
+    commands.uploadImage("result", withOpaqueAlpha(result.light));
     commands.report("noise", result.noise);
     commands.report("samples", static_cast<double>(result.samples));
 }

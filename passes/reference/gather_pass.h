@@ -26,6 +26,8 @@ GatherInputs gatherInputs(const Step& step, Commands& commands); // position, no
 // The input `face_normal`, or where nothing is connected what shaders take for it (lib/face.glsl): the
 // normals, and starts of rays by the distance from the eye.
 Image facesOf(const Step& step, Commands& commands, const Image& position, const Image& normal);
+// Three channels of light as the four of a texture.
+Image withOpaqueAlpha(const Image& colour);
 // Writes "result" and reports noise and samples.
 void finishGather(Commands& commands, const GatherResult& result);
 

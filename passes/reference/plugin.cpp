@@ -2,6 +2,7 @@
 #include "reference_ambient_occlusion.h"
 #include "reference_glossy_reflection.h"
 #include "reference_indirect_diffuse.h"
+#include "reference_path_trace.h"
 #include "reference_ray_query.h"
 #include "reference_soft_shadow.h"
 
@@ -9,6 +10,7 @@ KESTREL_PLUGIN {
     registry.add(kestrel::ReferenceAmbientOcclusion::type());
     registry.add(kestrel::ReferenceGlossyReflection::type());
     registry.add(kestrel::ReferenceIndirectDiffuse::type());
+    registry.add(kestrel::ReferencePathTrace::type());
     registry.add(kestrel::ReferenceRayQuery::type());
     registry.add(kestrel::ReferenceSoftShadow::type());
 }

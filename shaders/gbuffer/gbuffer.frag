@@ -1,6 +1,7 @@
 // Each OUT_… define switches one output on; what nobody reads is not computed.
 #include "lib/fragment.glsl"
 #include "lib/view.glsl"
+#include "shared/bsdf.h"
 #include "shared/ray.h"
 #ifdef OUT_MOTION
 #include "lib/last_view.glsl"
@@ -43,6 +44,9 @@ out vec4 out_material;
 #ifdef OUT_EMISSION
 out vec4 out_emission;
 #endif
+#ifdef OUT_REFRACTION
+out vec2 out_refraction;
+#endif
 #ifdef OUT_MOTION
 out vec2 out_motion;
 #endif
@@ -61,7 +65,7 @@ void main() {
 #ifdef MATERIAL_MASKED
     if (!materialCovers(material, v_tex_coord, v_tex_coord1, colour.a)) discard;
 #endif
-#if defined(OUT_NORMAL) || defined(OUT_FACE_NORMAL)
+#if defined(OUT_NORMAL) || defined(OUT_FACE_NORMAL) || defined(OUT_REFRACTION)
     vec3 eye = towardsEye(depthView, v_position);
     // From the corners, not from derivatives: those are noise where a triangle is thinner than a pixel.
     uvec4 corners = sceneTriangle(fragmentTriangle());
@@ -94,7 +98,7 @@ void main() {
 #ifdef OUT_POSITION
     out_position = vec4(v_position, 1.0);
 #endif
-#if defined(OUT_ALBEDO) || defined(OUT_MATERIAL) || defined(OUT_EMISSION)
+#if defined(OUT_ALBEDO) || defined(OUT_MATERIAL) || defined(OUT_EMISSION) || defined(OUT_REFRACTION)
     MaterialSample point = materialAt(material, coords, colour);
 #endif
 #ifdef OUT_ALBEDO
@@ -105,6 +109,9 @@ void main() {
 #endif
 #ifdef OUT_EMISSION
     out_emission = vec4(min(point.emission, vec3(65504.0)), 0.0); // the largest half float, never infinity
+#endif
+#ifdef OUT_REFRACTION
+    out_refraction = vec2(point.transmission, relativeIndex(point.ior, side > 0.0));
 #endif
 #ifdef OUT_MOTION
 #ifdef MOVES

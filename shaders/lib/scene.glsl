@@ -13,6 +13,7 @@
 #include "lib/frame.glsl"
 #include "lib/material.glsl"
 #include "lib/surface.glsl"
+#include "shared/ray.h"
 
 #ifdef SCENE_BY_SAMPLER
 uniform samplerBuffer scene_positions;
@@ -104,5 +105,6 @@ Surface sceneSurface(uint triangle, vec2 barycentrics, vec3 direction) {
     surface.roughness = point.roughness;
     surface.emission = point.emission;
     surface.material = corners.w;
+    surface.reach = faceReach(surface.normal, surface.position, p0, p1, p2);
     return surface;
 }

@@ -10,4 +10,5 @@ struct Surface {
     vec3 emission;      // linear radiance
     uint material;
     bool front;         // the ray met the front side
+    float reach;        // faceReach() of shared/ray.h
 };

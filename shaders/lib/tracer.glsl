@@ -41,5 +41,5 @@ Ray surfaceRay(vec3 origin, vec3 normal, vec3 direction) {
 // All that a hit of a tracer tells that gives positions only: a surface that faces the ray.
 Surface facingSurface(Ray ray, Hit hit) {
     return Surface(ray.origin + hit.t * ray.direction, hit.error, -ray.direction, -ray.direction, vec3(0.0), 0.0, 1.0, vec3(0.0),
-                   0u, true);
+                   0u, true, 0.0);
 }

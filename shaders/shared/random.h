@@ -17,6 +17,7 @@ const uint randomGlossy = 16384u;    // two a ray
 const uint randomLightJitter = 20480u; // of the positions of lights, per light
 const uint randomGather = 20992u;    // of samples of a reflective shadow map
 const uint randomScreenTrace = 21504u; // where between its samples a march begins
+const uint randomPath = 24576u; // of paths: four a bounce (shaders/ray_effects/path.glsl)
 const uint randomStochasticDepth = 22016u; // which depths a texel keeps; the hit's number is hashed in
 
 // Integer hash with good avalanche (multiply, xor-shift; constants found by search, "lowbias32").
