@@ -3,7 +3,7 @@
 
 namespace kestrel {
 
-Defines materialDefines(const SceneFacts& facts) {
+Defines materialDefines(const SceneFacts& facts, Blended blended) {
     Defines defines;
     if (facts.hasTextures) {
         defines["MATERIAL_TEXTURES"] = "1";
@@ -13,6 +13,8 @@ Defines materialDefines(const SceneFacts& facts) {
         if (facts.hasNormalMaps) defines["MATERIAL_NORMAL_MAPS"] = "1";
     }
     if (facts.hasMasked) defines["MATERIAL_MASKED"] = "1";
+    constexpr const char* names[] = {"", "BLENDED_KEPT", "BLENDED_ALONE", "BLENDED_LEFT_OUT"};
+    if (facts.hasBlend && blended != Blended::Tested) defines.emplace(names[static_cast<int>(blended)], "1");
     if (facts.hasVertexColours) defines["MATERIAL_COLOURS"] = "1";
     return defines;
 }

@@ -282,6 +282,10 @@ private:
         if (traces && (use.requests & requests::Surface) != 0 && (given & provides::Surface) == 0)
             note(use.port, fmt::format("'{}' needs normals and materials at hits, which '{}' does not give",
                                        node_.name(), producer));
+        if (info->kind == PortKind::Layers && (use.requests & requests::Surface) != 0 &&
+            (given & provides::Surface) == 0)
+            note(use.port, fmt::format("'{}' needs the triangles of samples, which '{}' does not give",
+                                       node_.name(), producer));
         if ((given & provides::AlwaysSnaps) != 0 && (use.requests & requests::Snap) == 0)
             note(use.port,
                  fmt::format("'{}' needs the exact direction, but '{}' always snaps to a nearby one",

@@ -80,8 +80,8 @@ Desc Desc::module(Bits provides, Bits required) {
     return desc;
 }
 
-Desc Desc::layersModule(const DepthLayers& layers, const View& view) {
-    Desc desc = module(0);
+Desc Desc::layersModule(const DepthLayers& layers, const View& view, Bits provides) {
+    Desc desc = module(provides);
     desc.depthLayers = layers;
     desc.view = view;
     return desc;

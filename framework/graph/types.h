@@ -120,7 +120,8 @@ enum class ResourceKind : std::uint8_t { Texture2D, Texture2DArray, TextureCube,
 // requires, requests).
 using Bits = std::uint32_t;
 namespace provides {
-inline constexpr Bits Surface = 1 << 0; // normal and material at a hit, not the position alone
+// Normal and material at a hit, not the position alone; of layers the triangles of all samples, in order.
+inline constexpr Bits Surface = 1 << 0;
 inline constexpr Bits Snaps =
     1 << 1; // can trace along a nearby candidate direction when the consumer requests that
 inline constexpr Bits AlwaysSnaps = 1 << 2; // cannot trace the exact direction
@@ -140,12 +141,18 @@ inline constexpr Bits Surface =
     1 << 0; // normal and material: consumers request requests::Surface of their tracer
 } // namespace required
 
+// What a pass that draws the scene does with blended materials (alphaMode BLEND). Tested: they are there
+// where their alpha is at least the material's cutoff, as masked ones are and as rays meet them. Kept:
+// wherever it is above 0. Alone: the same, and nothing else is drawn. LeftOut: nowhere.
+enum class Blended : std::uint8_t { Tested, Kept, Alone, LeftOut };
+
 // What a `layers` module (shaders/lib/layers.glsl) tells its consumers at declaration; Desc::view says from
-// where its samples were taken: divisor, guard band, jitter.
+// where its samples were taken: divisor, guard band, jitter. With provides::Surface it tells triangles too.
 struct DepthLayers {
-    int count = 0;        // depth samples that a texel holds at most (K)
+    int count = 0;        // depth samples of a texel that can be asked for at most (K)
     bool linear = true;   // stored as distance along the view axis, else as the rasterizer's depth
     bool ordered = false; // nearest first; otherwise in any order
+    Blended blended = Blended::Tested; // which surfaces they are samples of
     friend bool operator==(const DepthLayers&, const DepthLayers&) = default;
 };
 
@@ -161,6 +168,7 @@ struct FragmentLists {
     bool mainView = true;  // the frame's view comes first, then the six faces of the cube
     int side = 0;          // of a face, pixels; 0: there is no cube
     float nearPlane = 0;   // by which each face's eye stands behind the frame's, scene units
+    Blended blended = Blended::Tested;
     friend bool operator==(const FragmentLists&, const FragmentLists&) = default;
 };
 
@@ -183,7 +191,7 @@ struct Desc {
     static Desc array2D(Format format, Extent extent);
     static Desc buffer(std::uint64_t bytes, Format texel = Format::None);
     static Desc module(Bits provides, Bits required = 0);
-    static Desc layersModule(const DepthLayers& layers, const View& view);
+    static Desc layersModule(const DepthLayers& layers, const View& view, Bits provides = 0);
     // Bytes of all mips and layers.
     [[nodiscard]] std::uint64_t totalBytes() const;
     // Layers of level `mip`: of an array, slices of a volume, 6 of a cube, else 1.

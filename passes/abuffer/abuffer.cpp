@@ -1,6 +1,7 @@
 #include "abuffer.h"
 #include "execute/commands.h"
 #include "execute/exhausted_rays.h"
+#include "fragment_layers.h"
 #include "primitive_records.h"
 #include "views.h"
 #include <bit>
@@ -27,6 +28,8 @@ PassType ABuffer::type() {
         .input("nodes", PortKind::Buffer, "The nodes, sorted and linked")
         .input("data", PortKind::Buffer, "The triangle of each node, where data is decoupled")
         .output("tracer", PortKind::Tracer, "The nearest fragment or primitive along a ray")
+        .output("layers", PortKind::Layers,
+                "The fragments of the frame's view at a pixel, nearest first, with their triangles")
         .internal("exhausted", PortKind::Buffer, "Rays traced, and those that ran out of iterations")
         .choice(
             "record", &ABuffer::record, {"fragment", "primitive"},
@@ -79,6 +82,7 @@ Declaration ABuffer::declare(const World& world, const Inputs& inputs, const Dem
         }
     }
     declaration.modules.push_back(std::move(tracer));
+    declareFragmentLayers(world, inputs, demand, declaration);
     declaration.depends = declaration.depends | Causes::Properties;
     return declaration;
 }

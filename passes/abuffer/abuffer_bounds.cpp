@@ -16,6 +16,9 @@ PassType ABufferBounds::type() {
         .carries({.channels = 4, .space = Space::View})
         .flag("main_view", &ABufferBounds::mainView, "Sees what the camera sees, at the frame's resolution")
         .flag("cube", &ABufferBounds::cube, "Sees what lies around the eye")
+        .choice("blended", &ABufferBounds::blended, {"tested", "kept", "alone"},
+                "Fragments of blended materials: where alpha is at least the cutoff, as rays meet them; "
+                "wherever it is above 0; these alone, and nothing else, for their transparency")
         .number("side", &ABufferBounds::side, 0, 8192, "pixels",
                 "Of a face of the cube; 0: as high as the frame")
         .number("near", &ABufferBounds::nearPlane, 1e-9, 1e9, "scene units",
@@ -31,7 +34,8 @@ Declaration ABufferBounds::declare(const World& world, const Inputs&, const Dema
     if (!mainView && !cube)
         declaration.leftOut.push_back({"every view", "neither the frame nor the cube is asked for"});
 
-    const bool nothing = world.facts.triangles == 0;
+    lists.blended = blended;
+    const bool nothing = !abufferHasFragments(lists, world.facts);
     const auto view = [&](const char* port, Desc desc, bool ofCube, bool seen) {
         if (!demand.reads(port)) return;
         desc.lists = lists;
@@ -43,7 +47,7 @@ Declaration ABufferBounds::declare(const World& world, const Inputs&, const Dema
         Step step{.name = ofCube ? "faces" : "frame",
                   .run = ofCube ? &ABufferBounds::drawCube : &ABufferBounds::drawMain,
                   .shaders = {"abuffer/scene.vert", "abuffer/bounds.frag"},
-                  .defines = materialDefines(world.facts),
+                  .defines = materialDefines(world.facts, blended),
                   .uses = {{.port = port, .access = Access::Attachment, .write = true}},
                   .group = "bounds"};
         step.defines.merge(abufferDefines(lists, world.size));
@@ -55,7 +59,10 @@ Declaration ABufferBounds::declare(const World& world, const Inputs&, const Dema
     const auto faceSide = static_cast<std::uint32_t>(std::max(lists.side, 1));
     view("cube_bounds", Desc::array2D(Format::RGBA32F, {faceSide, faceSide, shared::abufferFaces}), true,
          cube);
-    if (nothing) declaration.leftOut.push_back({"drawing", "the scene has no triangles"});
+    if (nothing)
+        declaration.leftOut.push_back({"drawing", world.facts.triangles == 0
+                                                      ? "the scene has no triangles"
+                                                      : "no material is blended, and others are not stored"});
     if (!world.facts.hasMasked)
         declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
     declaration.depends = Causes::Camera | Causes::Cut | Causes::Geometry | Causes::Transforms |
@@ -66,13 +73,13 @@ Declaration ABufferBounds::declare(const World& world, const Inputs&, const Dema
 void ABufferBounds::drawMain(Commands& commands) {
     DrawState state = DrawState::overwrite();
     state.blend = Blend::MaxAndSum;
-    commands.drawScene(state, abufferClasses());
+    commands.drawScene(state, abufferClasses(blended));
 }
 
 void ABufferBounds::drawCube(Commands& commands) {
     DrawState state = DrawState::overwrite();
     state.blend = Blend::MaxAndSum;
-    commands.drawSceneLayers(state, abufferClasses(), shared::abufferFaces,
+    commands.drawSceneLayers(state, abufferClasses(blended), shared::abufferFaces,
                              [&](std::uint32_t face) { commands.set("face", face); });
 }
 

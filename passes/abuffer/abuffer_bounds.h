@@ -15,6 +15,7 @@ public:
 
     bool mainView = true;
     bool cube = true;
+    Blended blended = Blended::Tested;
     int side = 0;
     double nearPlane = 0.01;
 

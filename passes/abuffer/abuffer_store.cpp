@@ -58,7 +58,7 @@ Declaration ABufferStore::declare(const World& world, const Inputs& inputs, cons
 
     const std::uint64_t pixels = abufferPixels(lists, world.size);
     const std::uint64_t capacity = std::max(demand.grown("nodes"), nodesPerPixel * pixels);
-    const bool nothing = world.facts.triangles == 0 || pixels == 0;
+    const bool nothing = !abufferHasFragments(lists, world.facts) || pixels == 0;
     const auto buffer = [&](const char* port, std::uint64_t words) -> Output& {
         const std::uint64_t bytes = std::max<std::uint64_t>(words, 1) * 4;
         if (static_cast<std::int64_t>(words) > world.capabilities.maxTextureBufferTexels)
@@ -92,8 +92,10 @@ Declaration ABufferStore::declare(const World& world, const Inputs& inputs, cons
     declaration.depends = Causes::Camera | Causes::Cut | Causes::Geometry | Causes::Transforms |
                           Causes::Materials | Causes::Properties | Causes::Size;
     if (nothing) {
-        declaration.leftOut.push_back(
-            {"drawing", pixels == 0 ? "no view is asked for" : "the scene has no triangles"});
+        declaration.leftOut.push_back({"drawing", pixels == 0 ? "no view is asked for"
+                                                  : world.facts.triangles == 0
+                                                      ? "the scene has no triangles"
+                                                      : "no material is blended, and others are not stored"});
         return declaration;
     }
     declaration.outputs.push_back({.port = "counter", .desc = Desc::buffer(4), .clear = none});
@@ -149,7 +151,7 @@ std::vector<Step> ABufferStore::beginSteps(const Defines& given, const FragmentL
 Step ABufferStore::drawStep(const World& world, const FragmentLists& lists, bool ofCube) const {
     Step step{.name = ofCube ? "faces" : "frame",
               .shaders = {"abuffer/scene.vert", "abuffer/store.frag"},
-              .defines = materialDefines(world.facts),
+              .defines = materialDefines(world.facts, lists.blended),
               .uses = {{.port = "nodes", .access = Access::Image, .write = true}},
               .group = "store"};
     step.defines.merge(abufferDefines(lists, world.size));
@@ -167,7 +169,7 @@ Step ABufferStore::drawStep(const World& world, const FragmentLists& lists, bool
     const Extent& frame = world.size;
     const auto side = static_cast<std::uint32_t>(lists.side);
     const auto viewport = ofCube ? glm::uvec2(side) : glm::uvec2(frame.width, frame.height);
-    step.run = [viewport, ofCube](Commands& commands) {
+    step.run = [viewport, ofCube, classes = abufferClasses(lists.blended)](Commands& commands) {
         DrawState state = DrawState::overwrite();
         state.viewport = viewport;
         commands.set("capacity",
@@ -175,7 +177,7 @@ Step ABufferStore::drawStep(const World& world, const FragmentLists& lists, bool
                          static_cast<std::uint32_t>(abufferNodeWords(commands.desc("nodes").lists)));
         for (std::uint32_t face = 0; face < (ofCube ? shared::abufferFaces : 1); ++face) {
             if (ofCube) commands.set("face", face);
-            commands.drawScene(state, abufferClasses());
+            commands.drawScene(state, classes);
         }
     };
     return step;

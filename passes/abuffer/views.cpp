@@ -56,9 +56,14 @@ Defines abufferDefines(const FragmentLists& lists, const Extent& frame) {
     return defines;
 }
 
-std::vector<TriangleClass> abufferClasses() {
+std::vector<TriangleClass> abufferClasses(Blended blended) {
+    if (blended == Blended::Alone) return {TriangleClass::Masked, TriangleClass::MaskedDoubleSided};
     return {TriangleClass::Opaque, TriangleClass::OpaqueDoubleSided, TriangleClass::Masked,
             TriangleClass::MaskedDoubleSided};
+}
+
+bool abufferHasFragments(const FragmentLists& lists, const SceneFacts& facts) {
+    return facts.triangles > 0 && (lists.blended != Blended::Alone || facts.hasBlend);
 }
 
 } // namespace kestrel

@@ -20,7 +20,8 @@ namespace kestrel {
 // What shaders of the A-buffer need to know of it (shaders/abuffer/lists.glsl).
 [[nodiscard]] Defines abufferDefines(const FragmentLists& lists, const Extent& frame);
 
-// All triangles, as rays meet them: passes draw both sides of each.
-[[nodiscard]] std::vector<TriangleClass> abufferClasses();
+// All triangles of which fragments may be kept, as rays meet them: passes draw both sides of each.
+[[nodiscard]] std::vector<TriangleClass> abufferClasses(Blended blended);
+[[nodiscard]] bool abufferHasFragments(const FragmentLists& lists, const SceneFacts& facts);
 
 } // namespace kestrel

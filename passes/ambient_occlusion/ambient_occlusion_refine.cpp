@@ -97,6 +97,8 @@ Declaration AmbientOcclusionRefine::declare(const World& world, const Inputs& in
             step.defines.emplace("BY_HITS", "1");
             step.modules.push_back({"hits", requests::AllHits});
         } else {
+            if (inputs.connected("layers") && inputs["layers"].desc.depthLayers.ordered)
+                step.defines.emplace("IN_ORDER", "1");
             step.modules.push_back({"layers", 0});
         }
         declaration.steps.push_back(std::move(step));

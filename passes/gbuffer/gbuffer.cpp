@@ -58,11 +58,11 @@ void draw(Commands& commands, bool overFinishedDepth) {
                                TriangleClass::MaskedDoubleSided});
 }
 
-Step rasterStep(std::string name, const SceneFacts& facts, bool overFinishedDepth) {
+Step rasterStep(std::string name, const SceneFacts& facts, Blended blended, bool overFinishedDepth) {
     return {.name = std::move(name),
             .run = [overFinishedDepth](Commands& commands) { draw(commands, overFinishedDepth); },
             .shaders = {"gbuffer/gbuffer.vert", "gbuffer/gbuffer.frag"},
-            .defines = materialDefines(facts)};
+            .defines = materialDefines(facts, blended)};
 }
 
 bool isConstantZero(const Target& target, const SceneFacts& facts) {
@@ -87,13 +87,19 @@ PassType GBuffer::type() {
                  "Guard band: extra pixels of the frame on each side");
     table.flag("jitter", &GBuffer::jitter,
                "Moves the samples within the pixel from frame to frame (for temporal anti-aliasing)");
+    table.choice(
+        "blended", &GBuffer::blended, {"masked", "left_out"},
+        "Blended materials: as masked ones by their cutoff, or not at all, where a pass behind draws "
+        "them (TransparentComposite, WeightedBlended). Shadow maps and tracers have them masked "
+        "either way");
     return table;
 }
 
 Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& demand) const {
     Declaration declaration;
     const Extent extent = world.extentOf(view());
-    std::vector<Step> steps = {rasterStep("rasterize", world.facts, false)};
+    const Blended drawn = blended == BlendedSurfaces::LeftOut ? Blended::LeftOut : Blended::Tested;
+    std::vector<Step> steps = {rasterStep("rasterize", world.facts, drawn, false)};
     const bool empty = world.facts.triangles == 0;
     bool material = false;
     for (const Target& target : targets) {
@@ -104,7 +110,7 @@ Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& de
         } else {
             output.clear = glm::vec4(0);
             if (steps.back().uses.size() == maxTargets)
-                steps.push_back(rasterStep("rasterize_rest", world.facts, true));
+                steps.push_back(rasterStep("rasterize_rest", world.facts, drawn, true));
             steps.back().defines.emplace(target.define, "1");
             steps.back().uses.push_back({.port = target.port, .access = Access::Attachment, .write = true});
             material |= std::string_view(target.define) == "OUT_ALBEDO" ||
@@ -132,6 +138,8 @@ Declaration GBuffer::declare(const World& world, const Inputs&, const Demand& de
 
     if (!world.facts.hasMasked)
         declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
+    if (drawn == Blended::LeftOut && world.facts.hasBlend)
+        declaration.leftOut.push_back({"blended materials", "`blended` is left_out"});
     if (material && !world.facts.hasTextures)
         declaration.leftOut.push_back({"texture lookups", "no material has a texture"});
     if (demand.reads("emission") && !world.facts.hasEmission)

@@ -13,6 +13,8 @@ public:
     int divisor = 1;
     int guard = 0;
     bool jitter = false;
+    enum class BlendedSurfaces { Masked, LeftOut };
+    BlendedSurfaces blended = BlendedSurfaces::Masked;
 
 private:
     [[nodiscard]] View view() const {

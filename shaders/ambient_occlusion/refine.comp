@@ -67,9 +67,13 @@ float behind(EyeGrid grid, DiscPoint point, DiscSample s, float height, float va
     ivec2 texel = layers_texel((s.place - float(depthView.guard)) * scale);
     vec2 place = layers_position(texel) / scale + float(depthView.guard);
     for (int layer = 0; layer < layers_count; ++layer) {
+        ITERATION;
         float depth = layers_depth(texel, layer);
         float told = contribution(point, s, eyePosition(grid, place, depth < noLayer ? depth : depthOrFar(0.0)));
         value = min(value, told);
+#ifdef IN_ORDER
+        if (depth >= noLayer) break; // nor do the others hold any
+#endif
     }
     return value;
 }

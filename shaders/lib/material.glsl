@@ -3,6 +3,7 @@
 //     MATERIAL_COLOUR_ARRAYS, MATERIAL_DATA_ARRAYS   how many arrays hold colour (sRGB) and data textures, 0 to 4
 //     MATERIAL_TILED         some layers hold several textures
 //   MATERIAL_MASKED        some material is alpha-tested
+//     BLENDED_KEPT, BLENDED_ALONE, BLENDED_LEFT_OUT   blended ones otherwise (Blended of graph/types.h)
 //   MATERIAL_NORMAL_MAPS   some material has a normal map
 //   MATERIAL_COLOURS       some mesh has vertex colours
 // Textures lie in few arrays by size, since there is no bindless texture on a CPU driver; a layer wraps by arithmetic.
@@ -161,8 +162,17 @@ bool materialCovers(uint material, vec2 texCoord, vec2 texCoord1, float vertexAl
 #ifdef MATERIAL_TEXTURES
     alpha *= colourTexture(scene_materials[material].baseColourTexture, texCoordsAtHit(texCoord, texCoord1)).a;
 #endif
-    return (scene_materials[material].flags & materialFlagMasked) == 0u ||
-           alpha >= scene_materials[material].alphaCutoff;
+    uint flags = scene_materials[material].flags;
+    bool blended = (flags & materialFlagBlend) != 0u;
+#if defined(BLENDED_LEFT_OUT)
+    if (blended) return false;
+#elif defined(BLENDED_ALONE)
+    if (!blended) return false;
+#endif
+#if defined(BLENDED_KEPT) || defined(BLENDED_ALONE)
+    if (blended) return alpha > 0.0;
+#endif
+    return (flags & materialFlagMasked) == 0u || alpha >= scene_materials[material].alphaCutoff;
 #else
     return true;
 #endif

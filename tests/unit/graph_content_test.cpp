@@ -169,5 +169,20 @@ TEST(Content, ALayersModuleTellsItsConsumersWhatTheyDeclareBy) {
                 HasSubstr("'layers': does not say how many depth layers a texel holds"));
 }
 
+TEST(Content, LayersWithoutTrianglesAreRefusedToWhoRequestsThem) {
+    Registry registry = layersRegistry(4);
+    registry.add(mockType("Surfaces", {in("layers", PortKind::Layers), out("r")},
+                          [](const World&, const Inputs&, const Demand&) {
+                              Declaration d;
+                              d.outputs = {output("r", image(16))};
+                              d.steps = {step("read", {writes("r")}, {{"layers", requests::Surface}})};
+                              return d;
+                          }));
+    std::string text = layersText;
+    text.replace(text.find("Reader"), 6, "Surfaces");
+    EXPECT_THAT(messageOf<InputError>([&] { compileText(text, registry); }),
+                HasSubstr("'r' needs the triangles of samples, which 'm.layers' does not give"));
+}
+
 } // namespace
 } // namespace kestrel
