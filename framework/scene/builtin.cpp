@@ -1,5 +1,6 @@
 #include "scene/builtin.h"
 #include "core/error.h"
+#include "scene/builtin/blended.h"
 #include "scene/builtin/scenes.h"
 #include "scene/builtin/split.h"
 #include "scene/builtin/surround.h"
@@ -39,11 +40,12 @@ std::vector<std::string> names() {
     return all;
 }
 
-// What stands behind '?': "detail=0.1&split=4&extent=16".
+// What stands behind '?': "detail=0.1&split=4&extent=16&blended=0.3".
 struct Query {
     double detail = 1;
     int split = 1;
     double extent = 1;
+    double blended = 0; // 0: materials stay as they are
 };
 
 // The whole of `text` as a number within the range.
@@ -78,10 +80,12 @@ Query parseQuery(const std::string& source, std::string_view text) {
             query.split = parseNumber(source, key, value, 1, 64, "whole number");
         } else if (key == "extent") {
             query.extent = parseNumber(source, key, value, 1.0, 1000.0, "number");
+        } else if (key == "blended") {
+            query.blended = parseNumber(source, key, value, 0.01, 1.0, "number");
         } else {
             throw InputError(fmt::format(
-                "{}: unknown property '{}' of a built-in scene{}; there are: detail, split, extent", source,
-                key, didYouMean(key, {"detail", "split", "extent"})));
+                "{}: unknown property '{}' of a built-in scene{}; there are: detail, split, extent, blended",
+                source, key, didYouMean(key, {"detail", "split", "extent", "blended"})));
         }
         seen.push_back(key);
     }
@@ -117,6 +121,7 @@ Scene builtinScene(const std::string& source) {
             throw InputError(fmt::format("{}: {}", source, error.what()));
         }
         builtin::surround(scene, query.extent);
+        if (query.blended > 0) builtin::blend(scene, static_cast<float>(query.blended));
         scene.name = std::string(prefix) + name;
         scene.source = source;
         return scene;

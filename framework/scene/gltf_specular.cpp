@@ -136,6 +136,11 @@ MetallicSurface metallicSurface(const glm::vec3& diffuse, const glm::vec3& specu
 void convertSpecular(GltfContext& context, const SpecularMaterial& given, Material& material) {
     context.warn("specular-glossiness materials are converted to metallic-roughness");
     SpecularMaterial source = given;
+    // The fallback states the same opacity; some exporters (assimp) write it there alone.
+    if (material.alphaMode == AlphaMode::Blend && material.baseColour.a < source.diffuse.a) {
+        context.warn("blended specular-glossiness materials take the lower opacity of their fallback");
+        source.diffuse.a = material.baseColour.a;
+    }
     const auto imageOf = [&](const TextureRef& ref) {
         return ref.present() ? &context.scene.images[static_cast<size_t>(ref.image)] : nullptr;
     };

@@ -397,6 +397,20 @@ TEST(Builtin, ExtentMakesTheSceneTheMiddleOfALargerOne) {
     }
 }
 
+TEST(Builtin, BlendedMakesEveryMaterialGlassOfThatAlpha) {
+    const Scene plain = built("lattice", "?detail=0.1"), glass = built("lattice", "?blended=0.25&detail=0.1");
+    const SceneFacts before = gatherFacts(plain), after = gatherFacts(glass);
+    EXPECT_FALSE(before.hasBlend);
+    EXPECT_TRUE(after.hasBlend);
+    EXPECT_EQ(after.maskedTriangles, after.triangles);
+    EXPECT_EQ(after.triangles, before.triangles);
+    for (size_t i = 0; i < plain.materials.size(); ++i) {
+        EXPECT_EQ(glass.materials[i].baseColour, glm::vec4(glm::vec3(plain.materials[i].baseColour), 0.25f));
+        EXPECT_TRUE(glass.materials[i].doubleSided);
+    }
+    EXPECT_THROW(built("lattice", "?blended=0"), InputError);
+}
+
 std::string messageOf(const std::string& source) {
     try {
         (void)builtinScene(source);

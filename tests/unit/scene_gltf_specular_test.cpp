@@ -86,6 +86,19 @@ TEST(SpecularGlossiness, FactorsAreConvertedWithAWarning) {
     EXPECT_EQ(mirror.roughness, 0);
 }
 
+TEST(SpecularGlossiness, ABlendedMaterialIsAsClearAsItsFallbackSays) {
+    const TemporaryFolder folder;
+    for (const float fallback : {0.12f, 0.9f}) {
+        GltfBuilder builder =
+            fileWith({{"diffuseFactor", {0.5, 0.25, 0.125, 0.5}}, {"specularFactor", {0.04, 0.04, 0.04}}});
+        json& material = builder.document["materials"][0];
+        material["pbrMetallicRoughness"] = {{"baseColorFactor", {1, 1, 1, fallback}}};
+        EXPECT_EQ(builder.import(folder).materials[0].baseColour.a, 0.5f) << "opaque";
+        material["alphaMode"] = "BLEND";
+        EXPECT_EQ(builder.import(folder).materials[0].baseColour.a, std::min(fallback, 0.5f));
+    }
+}
+
 TEST(SpecularGlossiness, TexturesAreCombinedPixelByPixel) {
     const TemporaryFolder folder;
     GltfBuilder builder = fileWith(json::parse(R"({"diffuseTexture": {"index": 0, "extensions":
