@@ -1,5 +1,6 @@
 #include "reference/alpha_test.h"
 #include "reference/texture_sample.h"
+#include <limits>
 
 namespace kestrel {
 std::uint32_t firstMaskedTriangle(const Geometry& geometry) {
@@ -7,12 +8,14 @@ std::uint32_t firstMaskedTriangle(const Geometry& geometry) {
     return geometry.triangleCount() - count(TriangleClass::Masked) - count(TriangleClass::MaskedDoubleSided);
 }
 
-AlphaTest::AlphaTest(const Geometry& geometry, const Scene& scene)
+AlphaTest::AlphaTest(const Geometry& geometry, const Scene& scene, bool blendedAsMasked)
     : first_(firstMaskedTriangle(geometry))
     , images_(scene.images.size()) {
     for (const Material& material : flattenedMaterials(scene)) {
+        const bool kept = material.alphaMode == AlphaMode::Blend && !blendedAsMasked;
         materials_.push_back({material.alphaMode == AlphaMode::Opaque, material.baseColour.a,
-                              material.alphaCutoff, material.baseColourTexture});
+                              kept ? std::numeric_limits<float>::denorm_min() : material.alphaCutoff,
+                              material.baseColourTexture});
     }
     for (std::uint32_t triangle = first_; triangle < geometry.triangleCount(); ++triangle) {
         const std::uint32_t index = geometry.materials[triangle];

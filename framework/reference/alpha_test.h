@@ -10,11 +10,12 @@ namespace kestrel {
 // Keeps what it needs of geometry and scene, so that both may go away.
 class AlphaTest {
 public:
-    AlphaTest(const Geometry& geometry, const Scene& scene);
+    // `blendedAsMasked` false: blended materials are there wherever their alpha is above 0.
+    AlphaTest(const Geometry& geometry, const Scene& scene, bool blendedAsMasked = true);
 
     // Whether the point with barycentric weights u, v (of the second and third corner) of that triangle is
     // there: base colour alpha (factor times texture times vertex colour) at least the material's cutoff.
-    // Opaque materials always are; Blend is decided by its cutoff too.
+    // Opaque materials always are; Blend is decided by its cutoff too, unless said otherwise above.
     [[nodiscard]] bool isSolid(std::uint32_t triangle, float u, float v) const;
 
 private:

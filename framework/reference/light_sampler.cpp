@@ -1,4 +1,5 @@
 #include "reference/light_sampler.h"
+#include "shared/ggx.h"
 #include "shared/ray.h"
 #include <algorithm>
 #include <cmath>
@@ -52,26 +53,41 @@ LightSampler::LightSampler(std::span<const LightState> lights, const Geometry& g
         if (light.kind != LightKind::Rectangle && light.kind != LightKind::Sphere) punctual_.push_back(light);
 }
 
-void LightSampler::addPunctual(ShadowRays& to, const LitPoint& point, const glm::vec3& scale) const {
-    constexpr float inversePi = 1 / std::numbers::pi_v<float>;
+template<class Visit>
+void LightSampler::forEachPunctual(const LitPoint& point, const Visit& visit) const {
     for (const LightState& light : punctual_) {
         if (light.kind == LightKind::Directional) {
-            const float cosine = -glm::dot(point.normal, light.direction);
-            if (cosine > 0 && shared::leavesFace(-light.direction, point.faceNormal))
-                to.add({point.origin, -light.direction, 0, std::numeric_limits<float>::infinity()},
-                       scale * light.intensity * (cosine * inversePi));
+            if (shared::leavesFace(-light.direction, point.faceNormal))
+                visit(-light.direction, light.intensity,
+                      TraceRay{point.origin, -light.direction, 0, std::numeric_limits<float>::infinity()});
             continue;
         }
         const glm::vec3 way = light.position - point.position;
         const float distance = glm::length(way);
         if (!(distance > 0)) continue;
         const glm::vec3 direction = way / distance;
-        float share = glm::dot(point.normal, direction) * rangeWindow(distance, light.range);
+        float share = rangeWindow(distance, light.range);
         if (light.kind == LightKind::Spot) share *= spotWindow(light, direction);
         if (share > 0 && shared::leavesFace(direction, point.faceNormal))
-            to.add(rayTo(point.origin, light.position),
-                   scale * light.intensity * (share * inversePi) / distance / distance);
+            visit(direction, light.intensity * share / distance / distance,
+                  rayTo(point.origin, light.position));
     }
+}
+
+void LightSampler::addPunctual(ShadowRays& to, const LitPoint& point, const glm::vec3& scale) const {
+    constexpr float inversePi = 1 / std::numbers::pi_v<float>;
+    forEachPunctual(point, [&](const glm::vec3& direction, const glm::vec3& light, const TraceRay& ray) {
+        const float cosine = glm::dot(point.normal, direction);
+        if (cosine > 0) to.add(ray, scale * light * (cosine * inversePi));
+    });
+}
+
+void LightSampler::addHighlights(ShadowRays& to, const LitPoint& point, const glm::vec3& toEye,
+                                 const glm::vec3& f0, float alpha, const glm::vec3& scale) const {
+    forEachPunctual(point, [&](const glm::vec3& direction, const glm::vec3& light, const TraceRay& ray) {
+        const glm::vec3 lobe = shared::specularLobe(point.normal, toEye, direction, f0, alpha);
+        if (lobe != glm::vec3(0)) to.add(ray, scale * light * lobe);
+    });
 }
 
 void LightSampler::addArea(ShadowRays& to, const LitPoint& point, const glm::vec3& scale,

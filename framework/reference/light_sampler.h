@@ -43,11 +43,20 @@ public:
     // Point, spot and directional lights as KHR_lights_punctual has them: inverse square, cone, range window.
     // A ray each that brings its irradiance over pi, times `scale`.
     void addPunctual(ShadowRays& to, const LitPoint& point, const glm::vec3& scale) const;
+    // What the same lights reflect at `point` by the specular lobe (specularLobe() of shared/ggx.h) towards
+    // unit `toEye`: a ray each that brings that radiance, times `scale`.
+    void addHighlights(ShadowRays& to, const LitPoint& point, const glm::vec3& toEye, const glm::vec3& f0,
+                       float alpha, const glm::vec3& scale) const;
     // One point of the area emitters, by `u` uniform in [0, 1)^2.
     void addArea(ShadowRays& to, const LitPoint& point, const glm::vec3& scale, const glm::vec2& u) const;
     [[nodiscard]] const std::vector<AreaEmitter>& emitters() const { return emitters_; }
 
 private:
+    // Calls visit(unit direction to the light, irradiance of what faces it, ray to it) for each punctual
+    // light that the face does not hide.
+    template<class Visit>
+    void forEachPunctual(const LitPoint& point, const Visit& visit) const;
+
     std::vector<LightState> punctual_;
     std::vector<AreaEmitter> emitters_;
 };

@@ -97,8 +97,10 @@ SurfaceSample SurfaceSampler::at(const TraceHit& hit, const glm::vec3& direction
     const auto look = [&](const TextureRef& ref, bool colour) {
         return texture(ref, hit.triangle, hit.u, hit.v, colour);
     };
-    sample.albedo = glm::vec3(material.baseColour * look(material.baseColourTexture, true) *
-                              interpolated(&VertexAttributes::colour));
+    const glm::vec4 base = material.baseColour * look(material.baseColourTexture, true) *
+                           interpolated(&VertexAttributes::colour);
+    sample.albedo = glm::vec3(base);
+    sample.alpha = base.a;
     sample.emission = emission(hit.triangle, hit.u, hit.v);
     const glm::vec4 rough = look(material.metallicRoughnessTexture, false);
     sample.roughness = material.roughness * rough.g;

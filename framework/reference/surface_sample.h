@@ -12,6 +12,7 @@ namespace kestrel {
 struct SurfaceSample {
     glm::vec3 position{0}, faceNormal{0}, normal{0}; // the last interpolated, bent by the normal map
     glm::vec3 albedo{1};                             // linear base colour: factor, texture, vertex colour
+    float alpha = 1;                                 // of the same
     glm::vec3 emission{0};                           // linear radiance: factor, texture
     float metallic = 0, roughness = 1;               // factors times texture
     float transmission = 0, eta = 1.5f;              // eta: relativeIndex() of shared/bsdf.h, from that side

@@ -99,8 +99,8 @@ void fillPacket(RTCRay16& to, int* valid, std::span<const TraceRay> rays, size_t
 } // namespace
 
 struct ReferenceTracer::State {
-    State(const Geometry& geometry, const Scene& scene)
-        : alpha(geometry, scene)
+    State(const Geometry& geometry, const Scene& scene, bool blendedAsMasked)
+        : alpha(geometry, scene, blendedAsMasked)
         , coincident(geometry)
         , positions(geometry.positions)
         , indices(geometry.indices)
@@ -252,8 +252,8 @@ struct ReferenceTracer::State {
     mutable std::unique_ptr<SceneHandle> exactHandle;
 };
 
-ReferenceTracer::ReferenceTracer(const Geometry& geometry, const Scene& scene)
-    : state_(std::make_unique<State>(geometry, scene)) {}
+ReferenceTracer::ReferenceTracer(const Geometry& geometry, const Scene& scene, bool blendedAsMasked)
+    : state_(std::make_unique<State>(geometry, scene, blendedAsMasked)) {}
 
 std::optional<TraceHit> ReferenceTracer::closestHit(const TraceRay& ray) const {
     RTCRayHit query;
@@ -327,7 +327,7 @@ const Box& ReferenceTracer::bounds() const { return state_->bounds; }
 
 struct ReferenceTracer::State {};
 
-ReferenceTracer::ReferenceTracer(const Geometry&, const Scene&) {
+ReferenceTracer::ReferenceTracer(const Geometry&, const Scene&, bool) {
     throw MachineError("this build has no Embree, which the reference needs (libembree-dev)");
 }
 

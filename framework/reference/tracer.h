@@ -19,8 +19,9 @@ inline constexpr int tracePacket = 16;
 // be called from several threads at once.
 class ReferenceTracer {
 public:
-    // Copies what it needs. Throws MachineError if Embree is not built in or refuses.
-    ReferenceTracer(const Geometry& geometry, const Scene& scene);
+    // Copies what it needs. `blendedAsMasked` false: blended materials stop rays wherever their alpha is
+    // above 0. Throws MachineError if Embree is not built in or refuses.
+    ReferenceTracer(const Geometry& geometry, const Scene& scene, bool blendedAsMasked = true);
     ~ReferenceTracer();
     ReferenceTracer(ReferenceTracer&&) noexcept;
     ReferenceTracer& operator=(ReferenceTracer&&) noexcept;

@@ -42,7 +42,8 @@ PassType DirectLight::type() {
         .carries(content::colour)
         .range(0, 1e30)
         .output("radiance", PortKind::Radiance,
-                "Light of the lights that leaves a hit diffusely, and its emission; needs its material")
+                "Light of the lights that leaves a hit diffusely, its emission, and with `highlights` those; "
+                "needs its material")
         .output("shadow_maps", PortKind::Texture, "Reversed depth that each light sees, layer by layer")
         .carries(content::depth)
         .internal("maps", PortKind::Buffer, "How the maps lie (shared/light_map.h), and the lights")
@@ -55,6 +56,8 @@ PassType DirectLight::type() {
                 "Factor on the offset along the normal that keeps a plane from shadowing itself")
         .flag("emission", &DirectLight::emission,
               "The module adds what surfaces emit; off where area lights stand for the meshes that glow")
+        .flag("highlights", &DirectLight::highlights,
+              "The module adds what point, spot and directional lights reflect specularly")
         .flag("area_lights", &DirectLight::areaLights,
               "Rectangles and spheres too (shadowed from their middle); off where another pass samples them");
 }
@@ -175,6 +178,9 @@ void DirectLight::declareModule(const World& world, const LightMapLayout& maps,
     Module module{.port = "radiance", .shader = "lighting/direct_light.glsl", .defines = lightDefines(maps)};
     const bool shines = emission && world.facts.hasEmission;
     if (shines) module.defines.emplace("EMISSION", "1");
+    const SceneFacts& facts = world.facts;
+    if (highlights && facts.pointLights + facts.spotLights + facts.directionalLights > 0)
+        module.defines.emplace("HIGHLIGHTS", "1");
     if (maps.lights() > 0) {
         module.uses.push_back(shadowedLights[0]);
         if (maps.mapped) module.uses.push_back(shadowedLights[1]);

@@ -22,6 +22,7 @@ public:
     float bias = 1;
     bool emission = true;
     bool areaLights = true;
+    bool highlights = false;
 
 private:
     void uploadViews(Commands& commands, const LightMapLayout& maps);

@@ -5,6 +5,7 @@
 #include "reference_path_trace.h"
 #include "reference_ray_query.h"
 #include "reference_soft_shadow.h"
+#include "reference_transparency.h"
 
 KESTREL_PLUGIN {
     registry.add(kestrel::ReferenceAmbientOcclusion::type());
@@ -13,4 +14,5 @@ KESTREL_PLUGIN {
     registry.add(kestrel::ReferencePathTrace::type());
     registry.add(kestrel::ReferenceRayQuery::type());
     registry.add(kestrel::ReferenceSoftShadow::type());
+    registry.add(kestrel::ReferenceTransparency::type());
 }

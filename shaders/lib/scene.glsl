@@ -78,15 +78,15 @@ vec3 faceNormal(vec3 p0, vec3 p1, vec3 p2, vec3 otherwise) {
     return area > 0.0 ? face * inversesqrt(area) : otherwise;
 }
 
-// What a ray of this direction meets on the triangle.
-Surface sceneSurface(uint triangle, vec2 barycentrics, vec3 direction) {
+// What a ray of this direction meets on the triangle, and all of its material there.
+Surface sceneSurface(uint triangle, vec2 barycentrics, vec3 direction, out MaterialSample point) {
     uvec4 corners = sceneTriangle(triangle);
     vec3 p0 = scenePosition(corners.x);
     vec3 p1 = scenePosition(corners.y);
     vec3 p2 = scenePosition(corners.z);
     VertexRecord at = sceneVertexAt(corners, barycentrics);
     TexCoords coords = texCoordsAtHit(at.texCoord, at.texCoord1);
-    MaterialSample point = materialAt(corners.w, coords, at.colour);
+    point = materialAt(corners.w, coords, at.colour);
 
     Surface surface;
     surface.position = p0 + barycentrics.x * (p1 - p0) + barycentrics.y * (p2 - p0);
@@ -107,4 +107,9 @@ Surface sceneSurface(uint triangle, vec2 barycentrics, vec3 direction) {
     surface.material = corners.w;
     surface.reach = faceReach(surface.normal, surface.position, p0, p1, p2);
     return surface;
+}
+
+Surface sceneSurface(uint triangle, vec2 barycentrics, vec3 direction) {
+    MaterialSample point;
+    return sceneSurface(triangle, barycentrics, direction, point);
 }

@@ -6,7 +6,7 @@
 #include "lib/view.glsl"
 #include "lib/face.glsl"
 #ifdef OUT_SPECULAR
-#include "lib/light_specular.glsl"
+#include "shared/ggx.h"
 #endif
 
 layout(local_size_x = 8, local_size_y = 8) in;

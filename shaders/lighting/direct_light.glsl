@@ -1,10 +1,11 @@
-// The module `radiance` by the scene's lights: emission, and what a hit reflects diffusely of each light that its shadow map
-// lets through.
+// The module `radiance` by the scene's lights: emission, and what a hit reflects of each light that its shadow map lets through:
+// diffusely, and with HIGHLIGHTS specularly where the light has no extent.
 #include "lib/radiance.glsl"
 #if LIGHTS > 0
 #include "lib/lights.glsl"
 #include "lib/light_shadow.glsl"
 #include "lib/sampling.glsl"
+#include "shared/ggx.h"
 
 layout(std140) uniform M(Maps) {
     LightMapCounts M(counts);
@@ -22,12 +23,24 @@ float M(visible)(uint slot, Surface at) {
 #define VISIBLE(slot, at) 1.0
 #endif
 
+#ifdef HIGHLIGHTS
+vec3 M(toEye) = vec3(0.0);
+vec3 M(reflected) = vec3(0.0);
+#endif
 vec3 M(punctual)(uint slot, Surface at) {
     vec3 toLight;
     float distanceToLight;
     vec3 arriving = punctualLight(M(lights)[slot], at.position, toLight, distanceToLight);
     float cosine = leavesFace(toLight, at.normal) ? max(0.0, dot(at.shadingNormal, toLight)) : 0.0;
+#ifdef HIGHLIGHTS
+    float visible = VISIBLE(slot, at);
+    vec3 lobe = specularLobe(at.shadingNormal, M(toEye), toLight, mix(vec3(dielectricReflectance), at.albedo, at.metallic),
+                             ggxAlpha(at.roughness));
+    if (cosine > 0.0) M(reflected) += arriving * visible * lobe;
+    return arriving * (cosine * visible);
+#else
     return arriving * (cosine * VISIBLE(slot, at));
+#endif
 }
 
 vec3 M(irradiance)(Surface at) {
@@ -63,7 +76,14 @@ vec3 M(surface)(Surface at, vec3 toward) {
     leaving += at.emission;
 #endif
 #if LIGHTS > 0
+#ifdef HIGHLIGHTS
+    M(toEye) = toward;
+    M(reflected) = vec3(0.0);
+#endif
     leaving += at.albedo * ((1.0 - at.metallic) / pi) * min(M(irradiance)(at), vec3(lightMaximum));
+#ifdef HIGHLIGHTS
+    leaving += min(M(reflected), vec3(lightMaximum));
+#endif
 #endif
     return leaving;
 }

@@ -53,4 +53,22 @@ inline vec3 schlickFresnel(vec3 f0, float cosine) {
     return f0 + (vec3(1.0f) - f0) * (m2 * m2 * m);
 }
 
+// Specular BRDF of glTF 2.0 (appendix B) times the cosine at the light, for light from one direction: GGX microfacets (Walter et
+// al., "Microfacet Models for Refraction through Rough Surfaces", 2007), height-correlated Smith shadowing, Schlick's Fresnel
+// term. All directions unit, away from the surface; 0 below the horizon.
+inline vec3 specularLobe(vec3 n, vec3 toEye, vec3 toLight, vec3 f0, float alpha) {
+    float cosEye = dot(n, toEye);
+    float cosLight = dot(n, toLight);
+    vec3 sum = toEye + toLight;
+    vec3 h = sum * inversesqrt(max(dot(sum, sum), 1e-12f));
+    float cosHalf = clamp(dot(n, h), 0.0f, 1.0f);
+    float a2 = alpha * alpha;
+    float base = 1.0f + (a2 - 1.0f) * cosHalf * cosHalf;
+    float density = a2 / max(3.14159265358979f * base * base, 1e-30f);
+    // G2 / (4 cosEye cosLight) times cosLight.
+    float geometry = 2.0f / (smithRoot(cosEye, alpha) + smithRoot(cosLight, alpha)) / (4.0f * max(cosEye, 1e-4f));
+    vec3 fresnel = schlickFresnel(f0, dot(h, toLight));
+    return cosEye > 0.0f && cosLight > 0.0f ? fresnel * (density * geometry) : vec3(0.0f);
+}
+
 SHARED_END
