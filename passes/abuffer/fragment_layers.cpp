@@ -8,7 +8,7 @@ void declareFragmentLayers(const World& world, const Inputs& inputs, const Deman
     if (!demand.reads("layers")) return;
     const FragmentLists& lists = inputs["nodes"].desc.lists;
     if (!lists.mainView)
-        declaration.problems.push_back({"nodes", "has no lists of the frame's view, which `layers` are of"});
+        declaration.leftOut.push_back({"layers", "the frame's view is not among those of the A-buffer"});
     declaration.outputs.push_back(
         {.port = "layers",
          .desc = Desc::layersModule({.count = fragmentLayers, .ordered = true, .blended = lists.blended}, {},
@@ -16,7 +16,7 @@ void declareFragmentLayers(const World& world, const Inputs& inputs, const Deman
     Module layers{
         .port = "layers", .shader = "abuffer/layers.glsl", .defines = abufferDefines(lists, world.size)};
     layers.defines.emplace("LAYERS", std::to_string(fragmentLayers));
-    if (inputs["nodes"].constant) {
+    if (inputs["nodes"].constant || !lists.mainView) {
         layers.defines.emplace("EMPTY", "1");
     } else {
         layers.uses = {{.port = "pixels", .access = Access::Image},

@@ -30,9 +30,13 @@ PassType ReferenceTransparency::type() {
 Declaration ReferenceTransparency::declare(const World& world, const Inputs& inputs, const Demand&) const {
     Declaration declaration;
     const Desc& picture = inputs["picture"].desc;
-    if (picture.view != View{})
+    View view = picture.view;
+    view.jitter = false;
+    if (view != View{})
         declaration.problems.push_back(
-            {"picture", "is not what the frame's camera sees, pixel by pixel without guard band and jitter"});
+            {"picture", "is not what the frame's camera sees, pixel by pixel and without guard band"});
+    else if (picture.view.jitter)
+        declaration.leftOut.push_back({"jitter", "rays go through the middles of pixels"});
     declaration.outputs = {
         {.port = "result", .desc = Desc::texture2D(Format::RGBA32F, picture.extent, picture.view)},
         {.port = "surfaces", .desc = Desc::texture2D(Format::R32F, picture.extent, picture.view)}};
