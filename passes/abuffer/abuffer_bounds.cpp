@@ -18,7 +18,7 @@ PassType ABufferBounds::type() {
         .flag("cube", &ABufferBounds::cube, "Sees what lies around the eye")
         .choice("blended", &ABufferBounds::blended, {"tested", "kept", "alone"},
                 "Fragments of blended materials: where alpha is at least the cutoff, as rays meet them; "
-                "wherever it is above 0; these alone, and nothing else, for their transparency")
+                "wherever it is above 0; these alone, and nothing else, at pixels whose rays meet them")
         .number("side", &ABufferBounds::side, 0, 8192, "pixels",
                 "Of a face of the cube; 0: as high as the frame")
         .number("near", &ABufferBounds::nearPlane, 1e-9, 1e9, "scene units",
@@ -46,7 +46,7 @@ Declaration ABufferBounds::declare(const World& world, const Inputs&, const Dema
         if (nothing || !seen) return;
         Step step{.name = ofCube ? "faces" : "frame",
                   .run = ofCube ? &ABufferBounds::drawCube : &ABufferBounds::drawMain,
-                  .shaders = {"abuffer/scene.vert", "abuffer/bounds.frag"},
+                  .shaders = abufferShaders(lists, ofCube, "abuffer/bounds.frag"),
                   .defines = materialDefines(world.facts, blended),
                   .uses = {{.port = port, .access = Access::Attachment, .write = true}},
                   .group = "bounds"};

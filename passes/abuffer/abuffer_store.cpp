@@ -150,7 +150,7 @@ std::vector<Step> ABufferStore::beginSteps(const Defines& given, const FragmentL
 
 Step ABufferStore::drawStep(const World& world, const FragmentLists& lists, bool ofCube) const {
     Step step{.name = ofCube ? "faces" : "frame",
-              .shaders = {"abuffer/scene.vert", "abuffer/store.frag"},
+              .shaders = abufferShaders(lists, ofCube, "abuffer/store.frag"),
               .defines = materialDefines(world.facts, lists.blended),
               .uses = {{.port = "nodes", .access = Access::Image, .write = true}},
               .group = "store"};

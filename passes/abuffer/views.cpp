@@ -50,10 +50,17 @@ Defines abufferDefines(const FragmentLists& lists, const Extent& frame) {
         {"SIDE", std::to_string(lists.side)},
         {"NEAR_PLANE", fmt::format("uintBitsToFloat({}u)", std::bit_cast<std::uint32_t>(lists.nearPlane))}};
     if (bucketed) defines.emplace("BUCKETED", "1");
+    if (lists.blended == Blended::Alone) defines.emplace("BY_RAYS", "1");
     if (lists.structure == Structure::DLL || lists.structure == Structure::DLLB)
         defines.emplace("TWO_WAYS", "1");
     if (lists.decoupled) defines.emplace("DECOUPLED", "1");
     return defines;
+}
+
+std::vector<std::string> abufferShaders(const FragmentLists& lists, bool ofCube, const char* fragment) {
+    if (lists.blended == Blended::Alone && !ofCube)
+        return {"abuffer/scene.vert", "abuffer/by_rays.geom", fragment};
+    return {"abuffer/scene.vert", fragment};
 }
 
 std::vector<TriangleClass> abufferClasses(Blended blended) {

@@ -20,6 +20,12 @@ namespace kestrel {
 // What shaders of the A-buffer need to know of it (shaders/abuffer/lists.glsl).
 [[nodiscard]] Defines abufferDefines(const FragmentLists& lists, const Extent& frame);
 
+// The program that draws the scene into the frame's view or a face of the cube. Blended surfaces alone lie in
+// the frame's view where the ray through a pixel's middle meets them, not where the rasterizer finds them,
+// which rounds corners to parts of a pixel.
+[[nodiscard]] std::vector<std::string> abufferShaders(const FragmentLists& lists, bool ofCube,
+                                                      const char* fragment);
+
 // All triangles of which fragments may be kept, as rays meet them: passes draw both sides of each.
 [[nodiscard]] std::vector<TriangleClass> abufferClasses(Blended blended);
 [[nodiscard]] bool abufferHasFragments(const FragmentLists& lists, const SceneFacts& facts);

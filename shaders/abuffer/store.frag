@@ -1,14 +1,8 @@
 // Every fragment becomes a node in the list of its pixel (section 3.3, store stage), in no order. COUNTER: the node is the
 // next of all, by one counter, and goes in front of the list of its bucket. Otherwise the pixel's nodes lie side by side from
 // where the prefix sum said, and no list is kept yet: the address alone tells.
-#include "lib/fragment.glsl"
+#include "abuffer/fragment.glsl"
 #include "abuffer/lists.glsl"
-
-in vec3 v_position;
-in vec2 v_tex_coord;
-in vec2 v_tex_coord1;
-in float v_alpha;
-in float v_depth;
 
 #ifdef CUBE
 uniform uint face;
@@ -26,16 +20,15 @@ layout(r32ui) uniform uimageBuffer segments;
 #endif
 
 void main() {
-#ifdef MATERIAL_MASKED
-    if (!materialCovers(fragmentMaterial(), v_tex_coord, v_tex_coord1, v_alpha)) discard;
-#endif
+    uint triangle = fragmentTriangle();
+    float depth;
+    if (!abufferFragment(triangle, depth)) discard;
     ivec2 at = ivec2(gl_FragCoord.xy);
 #ifdef CUBE
     int pixel = ABUFFER_PIXEL(1u + face, at);
 #else
     int pixel = ABUFFER_PIXEL(0u, at);
 #endif
-    uint triangle = fragmentTriangle();
     uint next = 0u;
 #ifdef COUNTER
     uint node = atomicAdd(counter, 1u) + 1u;
@@ -44,14 +37,14 @@ void main() {
 #ifdef BUCKETED
     float zMin = uintBitsToFloat(imageLoad(pixels, pixel * PIXEL_WORDS).r);
     float zMax = uintBitsToFloat(imageLoad(pixels, pixel * PIXEL_WORDS + 1).r);
-    bucket = abufferBucket(v_depth, zMin, zMax, uint(BUCKETS));
+    bucket = abufferBucket(depth, zMin, zMax, uint(BUCKETS));
 #endif
     next = imageAtomicExchange(pixels, pixel * PIXEL_WORDS + HEAD_WORD(bucket), node);
 #else
     uint node = imageAtomicAdd(segments, 2 * pixel + 1, 1u);
     if (node > capacity) discard;
 #endif
-    imageStore(nodes, NODE_AT(node, 0), uvec4(floatBitsToUint(v_depth)));
+    imageStore(nodes, NODE_AT(node, 0), uvec4(floatBitsToUint(depth)));
 #ifdef SB
 #ifdef DECOUPLED
     imageStore(nodes, NODE_AT(node, 1), uvec4(node));

@@ -1,0 +1,38 @@
+// What a fragment of abuffer/scene.vert has to say of its triangle: whether it is there, and at which depth along the view's axis.
+// BY_RAYS, in the frame's view: as the ray through the pixel's middle meets the triangle, for which abuffer/by_rays.geom offers
+// fragments; elsewhere as the rasterizer finds it.
+#include "lib/fragment.glsl"
+
+#if defined(BY_RAYS) && !defined(CUBE)
+#include "lib/view.glsl"
+#include "shared/triangle.h"
+
+layout(std140) uniform VIEW_BLOCK { ViewData frameView; };
+
+bool abufferFragment(uint triangle, out float depth) {
+    vec3 origin, direction;
+    float tNear, tFar;
+    cameraRay(frameView, floor(gl_FragCoord.xy) + 0.5, origin, direction, tNear, tFar);
+    uvec4 corners = sceneTriangle(triangle);
+    TriangleHit hit;
+    bool met = intersectTriangle(triangleRay(origin, direction), tNear, tFar, scenePosition(corners.x), scenePosition(corners.y),
+                                 scenePosition(corners.z), hit);
+    depth = hit.t * -(mat3(frameView.view) * direction).z;
+    return met && sceneCovers(triangle, vec2(hit.u, hit.v));
+}
+#else
+in vec3 v_position;
+in vec2 v_tex_coord;
+in vec2 v_tex_coord1;
+in float v_alpha;
+in float v_depth;
+
+bool abufferFragment(uint triangle, out float depth) {
+    depth = v_depth;
+#ifdef MATERIAL_MASKED
+    return materialCovers(sceneTriangle(triangle).w, v_tex_coord, v_tex_coord1, v_alpha);
+#else
+    return true;
+#endif
+}
+#endif
