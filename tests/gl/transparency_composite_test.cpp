@@ -266,6 +266,42 @@ TEST_F(Composite, TheLatticeIsAsEmbreeHasItWhateverTheOrderOfItsTriangles) {
     }
 }
 
+TEST_F(Composite, BarsAboutTheEyeAndParallelRaysAreAsEmbreeHasThem) {
+    if (shipped().find("ReferenceTransparency") == nullptr) GTEST_SKIP() << "built without Embree";
+    // Slivers too: long, thin, and seen from near and far.
+    const Scene scene = loadScene("builtin:lattice?blended=0.2&detail=0.3");
+    const auto looking = [](const glm::vec3& eye, const glm::vec3& target, bool parallel) {
+        CameraState camera;
+        camera.view = glm::lookAt(eye, target, glm::vec3(0, 1, 0));
+        camera.position = eye;
+        camera.orthographic = parallel;
+        camera.nearPlane = 0.003f;
+        camera.farPlane = 0;
+        return camera;
+    };
+    for (const CameraState& camera :
+         {looking({0.13f, 0.07f, -2.02f}, {0.7f, 0.2f, -3}, false),
+          looking({0, 0.1f, -1}, {1, 0.3f, -1.1f}, false), looking({1.5f, 1, 3}, {0, 0, -2}, true)}) {
+        RenderOptions options;
+        options.checkFinite = true;
+        Renderer made = renderer(transparencyGraph({exactly, truly}, compared), scene, options, {128, 72, 1});
+        made.setFreeCamera(camera);
+        made.frame();
+        EXPECT_LE(shareApart(made.read(exactly), made.read(truly)), 0.001) << camera.position.x;
+    }
+}
+
+TEST_F(Composite, HighlightsOfGlassAreTheReferences) {
+    if (shipped().find("ReferenceTransparency") == nullptr) GTEST_SKIP() << "built without Embree";
+    const Scene scene = loadScene("builtin:lattice?blended=0.2&detail=0.1");
+    const std::vector<std::string> shining =
+        with(compared, {"direct.highlights=true", "truth.highlights=true"});
+    const std::vector<Image> images = made(scene, {exactly, truly}, shining, {96, 54, 1}, "corner");
+    EXPECT_LE(shareApart(images[0], images[1]), 0.001);
+    const Image dull = made(scene, {exactly}, compared, {96, 54, 1}, "corner").front();
+    EXPECT_GT(shareApart(images[0], dull), 0.05) << "there are none";
+}
+
 TEST_F(Composite, TheHouseOfGlassIsAsEmbreeHasItWhateverTheOrderOfItsTriangles) {
     if (shipped().find("ReferenceTransparency") == nullptr) GTEST_SKIP() << "built without Embree";
     const auto file = assetsFolder() / "fzk-haus-blend" / "fzk-haus.glb";
