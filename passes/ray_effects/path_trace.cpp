@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <limits>
+#include <span>
 
 namespace kestrel {
 namespace {
@@ -19,6 +20,11 @@ std::uint32_t tiles(std::uint32_t pixels) { return (pixels + tile - 1) / tile; }
 
 // Paths have slots for whole tiles.
 std::uint32_t groupsOf(const Extent& extent) { return tiles(extent.width) * tiles(extent.height); }
+
+// From one list of slots to the next.
+std::uint64_t aliveWords(const Extent& extent) {
+    return sizeof(shared::WorkListHeader) / 4 + std::uint64_t{groupsOf(extent)} * tile * tile;
+}
 
 } // namespace
 
@@ -57,8 +63,7 @@ PassType PathTrace::type() {
                "emission is counted from the surfaces themselves")
         .output("result", PortKind::Texture,
                 "Mean radiance that reaches the camera, also from the surroundings where nothing is; alpha: "
-                "paths "
-                "a pixel")
+                "paths a pixel")
         .carries(content::colour)
         .range(0, std::numeric_limits<double>::infinity())
         .output("indirect", PortKind::Texture,
@@ -66,6 +71,7 @@ PassType PathTrace::type() {
         .carries(content::colour)
         .range(0, std::numeric_limits<double>::infinity())
         .internal("paths", PortKind::Buffer, "Where each path has come to (shaders/ray_effects/path.glsl)")
+        .internal("alive", PortKind::Buffer, "The paths that go on after each bounce, list by list")
         .internal("light", PortKind::Buffer, "What each path has brought")
         .internal("pixels", PortKind::Buffer, "The pixels that are sampled, as a list (shared/work_list.h)")
         .internal("squares", PortKind::Texture, "Sum of squared differences of luminance from its mean")
@@ -75,16 +81,14 @@ PassType PathTrace::type() {
                 "Rays of a path after the one that the G-buffer stands for")
         .number("samples", &PathTrace::samples, 1, 64, "paths",
                 "Paths of a pixel that is sampled, in a frame")
+        .flag("adaptive", &PathTrace::adaptive,
+              "Samples pixels where their deviation asks for it, once they are warm; off: all alike")
         .number("share", &PathTrace::share, 0.01, 1, "",
-                "Share of the pixels that a frame samples once they are warm: those whose deviation asks for "
-                "it; 1: "
-                "all")
-        .number("warm_up", &PathTrace::warmUp, 2, 1024, "frames",
-                "Frames that sample every pixel, where share is below 1")
+                "Share of the pixels that a frame samples then, on the whole")
+        .number("warm_up", &PathTrace::warmUp, 2, 1024, "frames", "Frames that sample every pixel first")
         .flag("area_lights", &PathTrace::areaLights,
               "The radiance has the light of rectangles and spheres in it, so that meshes which show them "
-              "light mirrors "
-              "and glass alone; off: they light along every ray");
+              "light mirrors and glass alone; off: they light along every ray");
 }
 
 PathTrace::Shape PathTrace::shapeOf(const World&, const Inputs& inputs, const Demand& demand) const {
@@ -93,7 +97,7 @@ PathTrace::Shape PathTrace::shapeOf(const World&, const Inputs& inputs, const De
     shape.surfaces = (inputs["tracer"].desc.provides & provides::Surface) != 0;
     shape.needs = (inputs["radiance"].desc.required & required::Surface) != 0;
     shape.bounces = inputs["depth"].constant == glm::vec4(0) ? 0 : shape.surfaces ? bounces : 1;
-    shape.adaptive = share < 1;
+    shape.adaptive = adaptive;
     shape.indirect = demand.reads("indirect");
     return shape;
 }
@@ -116,8 +120,12 @@ Declaration PathTrace::declare(const World& world, const Inputs& inputs, const D
     };
     image("result", Format::RGBA32F, true);
     if (shape.indirect) image("indirect", Format::RGBA32F, true);
-    if (shape.bounces > 0)
+    if (shape.bounces > 0) {
         declaration.outputs.push_back({.port = "paths", .desc = Desc::buffer(slots * recordBytes)});
+        declaration.outputs.push_back(
+            {.port = "alive",
+             .desc = Desc::buffer(4 * aliveWords(shape.extent) * static_cast<std::uint64_t>(shape.bounces))});
+    }
     declaration.outputs.push_back({.port = "light", .desc = Desc::buffer(slots * lightBytes)});
     if (shape.bounces == 0) declaration.leftOut.push_back({"tracing", "the depth is empty everywhere"});
     if (!shape.surfaces && bounces > 1)
@@ -186,6 +194,7 @@ void PathTrace::declarePath(const World& world, const Inputs& inputs, const Shap
                             Declaration& declaration) const {
     Defines defines = materialDefines(world.facts);
     defines.insert_or_assign("SAMPLES", std::to_string(samples));
+    defines.insert_or_assign("ALIVE_WORDS", std::to_string(aliveWords(shape.extent)));
     if (shape.needs) defines.emplace("REQUIRES_SURFACE", "1");
     std::vector<Use> listed;
     if (shape.adaptive) {
@@ -201,6 +210,11 @@ void PathTrace::declarePath(const World& world, const Inputs& inputs, const Shap
         return uses;
     };
 
+    if (shape.bounces > 0)
+        declaration.steps.push_back({.name = fmt::format("clear{}", path),
+                                     .run = {&PathTrace::clear, shape.bounces, 4 * aliveWords(shape.extent)},
+                                     .uses = {{.port = "alive", .access = Access::Copy, .write = true}},
+                                     .group = "tracing"});
     Step begin{.name = fmt::format("begin{}", path),
                .run = {&PathTrace::begin, path},
                .shaders = {"ray_effects/path_begin.comp"},
@@ -218,16 +232,19 @@ void PathTrace::declarePath(const World& world, const Inputs& inputs, const Shap
     if (shape.bounces == 0)
         begin.defines.emplace("LAST", "1");
     else
-        begin.uses.push_back(storage("paths"));
+        begin.uses.insert(begin.uses.end(), {storage("paths"), storage("alive")});
     useFaceNormal(declaration, begin, inputs);
     declaration.steps.push_back(std::move(begin));
 
     for (int i = 1; i <= shape.bounces; ++i) {
         Step bounce{.name = fmt::format("bounce{}_{}", path, i),
-                    .run = {&PathTrace::bounce, path, i},
+                    .run = {&PathTrace::bounce, path, i, 4 * aliveWords(shape.extent)},
                     .shaders = {"ray_effects/path_bounce.comp"},
                     .defines = defines,
-                    .uses = with({storage("light"), storage("paths")}),
+                    .uses = {storage("light"),
+                             storage("paths"),
+                             storage("alive"),
+                             {.port = "alive", .access = Access::Indirect}},
                     .modules = {{"tracer", requests::ClosestHit | (shape.surfaces ? requests::Surface : 0)},
                                 {"radiance", 0}},
                     .group = "tracing"};
@@ -292,6 +309,12 @@ void PathTrace::choose(Commands& commands) const {
     commands.dispatchOver(commands.desc("result").extent);
 }
 
+void PathTrace::clear(Commands& commands, int lists, std::uint64_t stride) const {
+    const shared::WorkListHeader empty{0, 0, 0, 0, {0, 1, 1, 0}};
+    for (int i = 0; i < lists; ++i)
+        commands.upload("alive", std::as_bytes(std::span(&empty, 1)), static_cast<std::uint64_t>(i) * stride);
+}
+
 void PathTrace::begin(Commands& commands, int path) const {
     commands.set("path", static_cast<std::uint32_t>(path));
     if (commands.uses("pixels"))
@@ -300,14 +323,11 @@ void PathTrace::begin(Commands& commands, int path) const {
         commands.dispatchOver(commands.desc("depth").extent);
 }
 
-void PathTrace::bounce(Commands& commands, int path, int bounce) const {
+void PathTrace::bounce(Commands& commands, int path, int bounce, std::uint64_t stride) const {
     commands.set("path", static_cast<std::uint32_t>(path));
     commands.set("bounce", static_cast<std::uint32_t>(bounce));
-    if (commands.uses("pixels"))
-        return commands.dispatchIndirect("pixels", offsetof(shared::WorkListHeader, groups));
-    const auto slots = static_cast<std::uint32_t>(commands.desc("paths").bytes / recordBytes);
-    commands.set("slots", slots);
-    commands.dispatchOver(slots);
+    commands.dispatchIndirect("alive", static_cast<std::uint64_t>(bounce - 1) * stride +
+                                           offsetof(shared::WorkListHeader, groups));
 }
 
 void PathTrace::add(Commands& commands, int path) const {

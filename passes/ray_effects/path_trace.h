@@ -11,7 +11,8 @@ namespace kestrel {
 // tells the same by Embree, and how emission and lights stand to each other.
 //
 // `result` and `indirect` are the means over the frames since something other than the frame changed, with
-// the number of paths in alpha; they need no Accumulate. Adaptive sampling is `share`.
+// the number of paths in alpha; they need no Accumulate. With `adaptive` the paths of all pixels in the mean
+// are reported.
 class PathTrace final : public Pass {
 public:
     static PassType type();
@@ -20,7 +21,8 @@ public:
 
     int bounces = 2;
     int samples = 1;
-    float share = 1;
+    bool adaptive = false;
+    float share = 0.25f;
     int warmUp = 16;
     bool areaLights = true;
 
@@ -34,8 +36,9 @@ private:
     void prepare(Commands& commands);
     void choose(Commands& commands) const;
     void total(Commands& commands) const;
+    void clear(Commands& commands, int lists, std::uint64_t stride) const;
     void begin(Commands& commands, int path) const;
-    void bounce(Commands& commands, int path, int bounce) const;
+    void bounce(Commands& commands, int path, int bounce, std::uint64_t stride) const;
     void add(Commands& commands, int path) const;
 
     std::uint32_t frames_ = 0; // in the present mean, with this one

@@ -10,14 +10,6 @@
 
 layout(local_size_x = 64) in;
 
-#ifdef LISTED
-layout(std430) readonly buffer Pixels {
-    WorkListHeader header;
-    uint items[];
-} list;
-#else
-uniform uint slots;
-#endif
 uniform uint bounce;
 
 #ifdef PANELS
@@ -33,8 +25,8 @@ bool showsAreaLight(vec3 position, vec3 emission) {
         bool sphere = light.kind == lightKindSphere;
         float tolerance = samePlace * max(light.halfSize.x, sphere ? 0.0 : light.halfSize.y);
         vec2 across = abs(vec2(dot(r, light.tangent), dot(r, light.bitangent)));
-        bool liesOn = sphere ? abs(length(r) - light.halfSize.x) <= tolerance
-                             : abs(dot(r, light.direction)) <= tolerance && all(lessThanEqual(across, light.halfSize + tolerance));
+        bool onPlane = abs(dot(r, light.direction)) <= tolerance && all(lessThanEqual(across, light.halfSize + tolerance));
+        bool liesOn = sphere ? abs(length(r) - light.halfSize.x) <= tolerance : onPlane;
         const vec3 weights = vec3(0.2126, 0.7152, 0.0722);
         bool alike = dot(abs(emission - light.intensity), weights) <= 0.01 * dot(light.intensity, weights);
         shows = shows || ((sphere || light.kind == lightKindRectangle) && liesOn && alike);
@@ -44,27 +36,21 @@ bool showsAreaLight(vec3 position, vec3 emission) {
 #endif
 
 void main() {
-    uint slot = gl_GlobalInvocationID.x;
-#ifdef LISTED
-    if (slot >= list.header.count) return;
-#else
-    if (slot >= slots) return;
-#endif
+    // Groups are whole: those after the end of the list trace an empty interval.
+    uint list = (bounce - 1u) * uint(ALIVE_WORDS);
+    bool exists = gl_GlobalInvocationID.x < alive[list];
+    uint slot = exists ? alive[list + aliveHeader + gl_GlobalInvocationID.x] : 0u;
     uint record = slot * pathRecordTexels;
     vec4 first = paths[record];
     vec4 third = paths[record + 2u];
-    uint flags = floatBitsToUint(first.w);
-    bool exists = (flags & pathFlagExists) != 0u;
     vec3 throughput = third.rgb;
     ivec2 pixel = unpackPixel(floatBitsToUint(third.w));
     Ray ray = surfaceRay(first.xyz, paths[record + 3u].xyz, paths[record + 1u].xyz);
     tracer_aim(ray);
     if (!exists) ray.tMax = -1.0; // an empty interval: no tracer walks it
-#ifndef LAST
-    paths[record].w = uintBitsToFloat(0u); // the path ends unless it scatters
-#endif
     Hit hit;
     vec3 arriving;
+    bool goes = false;
     if (tracer_closestHit(ray, hit)) {
 #ifdef SURFACES
         Surface at = tracer_surface(ray, hit);
@@ -76,17 +62,16 @@ void main() {
         bool known = at.error == 0.0;
         BsdfSurface bsdf = BsdfSurface(known ? at.albedo : vec3(0.0), at.metallic, at.roughness, of.transmission,
                                        relativeIndex(of.ior, at.front));
+        goes = exists;
         vec3 own = at.emission;
 #ifdef PANELS
-        if ((flags & pathFlagDiffuse) != 0u && showsAreaLight(at.position, own)) own = vec3(0.0);
+        if (floatBitsToUint(first.w) == bsdfDiffuse && showsAreaLight(at.position, own)) own = vec3(0.0);
 #endif
-        arriving = throughput * own + scatter(at, bsdf, -ray.direction, start, throughput, slot, pixel, bounce);
+        arriving = throughput * own + scatter(at, bsdf, -ray.direction, start, throughput, slot, pixel, bounce, goes);
 #ifdef UNLIT
         if (known && (of.flags & materialFlagUnlit) != 0u) {
             arriving = throughput * (bsdf.colour + at.emission);
-#ifndef LAST
-            paths[record].w = uintBitsToFloat(0u);
-#endif
+            goes = false;
         }
 #endif
 #else
@@ -97,4 +82,7 @@ void main() {
     }
     ITERATIONS_END;
     if (exists) light[2u * slot + 1u].rgb += arriving;
+#ifndef LAST
+    goOn(slot, goes, bounce);
+#endif
 }

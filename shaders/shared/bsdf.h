@@ -1,4 +1,5 @@
-// What surfaces make of light, as directions that paths are drawn along; the same formulas on both sides of the C++/GLSL border.
+// What surfaces make of light, as directions that paths are drawn along; the same formulas on both sides of the C++/GLSL
+// border.
 //
 // A surface is metal, glass, or an opaque dielectric, each by its share (glTF 2.0, appendix B; KHR_materials_transmission):
 //

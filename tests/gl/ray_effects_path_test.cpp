@@ -209,7 +209,8 @@ TEST_F(Paths, ThroughABvhAreEmbrees) {
 
 TEST_F(Paths, AreTheSameToTheBitAndAnothersSeedIsAnother) {
     const Scene scene = room();
-    const Graph graph = pathGraph({traced, bounced}, {"path.share=0.5", "path.warm_up=2"});
+    const Graph graph =
+        pathGraph({traced, bounced}, {"path.adaptive=true", "path.share=0.5", "path.warm_up=2"});
     const auto first = run(graph, scene, {traced, bounced}, 6, inRoom());
     EXPECT_EQ(first, run(graph, scene, {traced, bounced}, 6, inRoom()));
     RenderOptions other;
@@ -367,7 +368,7 @@ TEST_F(Paths, AdaptiveSamplingReachesTheErrorOfAFixedRateInFewerPaths) {
         for (size_t i = 3; i < of.values.size(); i += 4) sum += double{of.values[i]};
         return sum / static_cast<double>(of.pixelCount());
     };
-    const Image adaptive = image({"path.share=0.25", "path.warm_up=16"}, 160);
+    const Image adaptive = image({"path.adaptive=true", "path.share=0.25", "path.warm_up=16"}, 160);
     const double spent = paths(adaptive);
     EXPECT_LT(spent, 70);
     const Image fixed = image({}, static_cast<int>(std::ceil(spent)));
