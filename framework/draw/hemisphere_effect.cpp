@@ -33,14 +33,14 @@ Declaration HemisphereEffect::declareEffect(const World& world, const Inputs& in
     if (snaps) {
         if (estimator == Estimator::CosineRatio) step.defines.emplace("COSINE_RATIO", "1");
         // Between steps the sum of weights must live somewhere, also if nobody else reads it.
-        if (weighted || rays > maxRaysPerStep) {
+        if (weighted || rays > raysPerStep(inputs["tracer"].desc)) {
             step.defines.emplace("WEIGHT", "1");
             step.uses.push_back({.port = "weight", .access = Access::Image, .write = true});
             if (!weighted) declaration.outputs.push_back(weight);
         }
     }
     useFaceNormal(declaration, step, inputs);
-    declaration.steps = raySteps(std::move(step), rays, world.facts);
+    declaration.steps = raySteps(std::move(step), rays, inputs["tracer"].desc, world.facts);
     declaration.depends = Causes::Frame;
     return declaration;
 }

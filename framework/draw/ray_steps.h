@@ -10,9 +10,13 @@ namespace kestrel {
 // llvmpipe silently cuts an invocation's loops short (65,535).
 inline constexpr int maxRaysPerStep = 16;
 
-// `step` as often as `rays` rays a pixel need, named "trace0", "trace1"…, in the group "tracing". Each gets
-// the defines RAYS and FIRST_RAY (its own), TOTAL_RAYS, CONTINUES (all but the first: images hold sums of the
-// steps before), ENDS (the last: makes means of them), and those of the materials that hits may lie on.
-std::vector<Step> raySteps(Step step, int rays, const SceneFacts& facts);
+// The same for rays of this tracer: those through the pixels of an A-buffer take many more iterations each.
+[[nodiscard]] int raysPerStep(const Desc& tracer);
+
+// `step` as often as `rays` rays a pixel of this tracer need, named "trace0", "trace1"…, in the group
+// "tracing". Each gets the defines RAYS and FIRST_RAY (its own), TOTAL_RAYS, CONTINUES (all but the first:
+// images hold sums of the steps before), ENDS (the last: makes means of them), and those of the materials
+// that hits may lie on.
+std::vector<Step> raySteps(Step step, int rays, const Desc& tracer, const SceneFacts& facts);
 
 } // namespace kestrel

@@ -1,4 +1,5 @@
 #include "abuffer.h"
+#include "block_bounds.h"
 #include "execute/commands.h"
 #include "execute/exhausted_rays.h"
 #include "fragment_layers.h"
@@ -30,6 +31,8 @@ PassType ABuffer::type() {
         .output("tracer", PortKind::Tracer, "The nearest fragment or primitive along a ray")
         .output("layers", PortKind::Layers,
                 "The fragments of the frame's view at a pixel, nearest first, with their triangles")
+        .output("hits", PortKind::Hits, "Every fragment or primitive along a ray")
+        .internal("block_bounds", PortKind::Buffer, "Depth bounds of blocks of pixels")
         .internal("exhausted", PortKind::Buffer, "Rays traced, and those that ran out of iterations")
         .choice(
             "record", &ABuffer::record, {"fragment", "primitive"},
@@ -37,6 +40,14 @@ PassType ABuffer::type() {
             "triangles "
             "that touch the pixel, which the pass finds itself in the views and buckets of the store, by an "
             "exact test")
+        .choice(
+            "march", &ABuffer::march, {"exhaustive", "fixed", "hierarchical"},
+            "Through every pixel on the way, through `steps` of them in each view, or over blocks of pixels "
+            "that the ray does not meet (with `skipping`; changes no hit)")
+        .number("steps", &ABuffer::steps, 1, 4096, "pixels", "Of each view that a ray looks at, with `fixed`")
+        .choice("views", &ABuffer::views, {"multi", "single"}, "All views of the store, or the frame's alone")
+        .choice("layering", &ABuffer::layering, {"multi", "single"},
+                "All fragments, or the nearest of each pixel alone; of primitives all")
         .flag("skipping", &ABuffer::skipping,
               "Passes pixels and buckets whose depths a ray does not have; changes no hit")
         .number("thickness", &ABuffer::thickness, 0, 100, "pixel footprints",
@@ -48,52 +59,94 @@ PassType ABuffer::type() {
 
 Declaration ABuffer::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
     Declaration declaration;
-    const FragmentLists& lists = inputs["nodes"].desc.lists;
+    FragmentLists lists = inputs["nodes"].desc.lists;
     const bool primitive = record == ABufferRecord::Primitive;
-    declaration.outputs.push_back(
-        {.port = "tracer",
-         .desc = Desc::module(provides::Surface | (primitive ? 0 : provides::Approximate))});
-    Module tracer{.port = "tracer",
-                  .shader = primitive ? "abuffer/primitives.glsl" : "abuffer/abuffer.glsl",
-                  .defines = abufferDefines(lists, world.size)};
-    if (inputs["nodes"].constant ||
-        (primitive && (world.facts.triangles == 0 || abufferPixels(lists, world.size) == 0))) {
-        tracer.shader = "abuffer/abuffer.glsl";
-        tracer.defines.emplace("EMPTY", "1");
-        declaration.leftOut.push_back({"marching", "there are no fragments"});
-    } else {
-        if (primitive) {
-            declarePrimitiveRecords(declaration, tracer, world, lists, demand);
-            tracer.defines.emplace("PROVIDES_TRACER", "1");
-            if (world.facts.hasMasked) tracer.defines.emplace("MATERIAL_MASKED", "1");
-            declaration.leftOut.push_back(
-                {"fragments", "`record` primitive keeps triangles in place of them"});
-            declaration.depends =
-                Causes::Camera | Causes::Cut | Causes::Geometry | Causes::Transforms | Causes::Size;
-        } else {
-            declareFragments(declaration, inputs, demand, tracer);
+    const Bits given = provides::Surface | (primitive ? 0 : provides::Approximate);
+    for (const char* port : {"tracer", "hits"})
+        if (demand.reads(port)) {
+            Desc desc = Desc::module(given);
+            desc.lists = lists; // consumers that trace several rays at once need to know
+            declaration.outputs.push_back({.port = port, .desc = desc});
         }
-        tracer.defines.emplace("BUDGET", std::to_string(budget));
-        if (skipping) tracer.defines.emplace("SKIPPING", "1");
-        if (countExhausted) {
-            Step clear{.name = "clear", .run = [](Commands& commands) { exhaustion::clear(commands); }};
-            exhaustion::declare(declaration, tracer, clear);
-            declaration.steps.push_back(std::move(clear));
+    declaration.depends = Causes::Properties;
+    declareFragmentLayers(world, inputs, demand, declaration);
+    if (!demand.reads("tracer") && !demand.reads("hits")) return declaration;
+    const bool single = views == ABufferExtent::Single;
+    if (single) lists.side = 0;
+    const char* empty = inputs["nodes"].constant || world.facts.triangles == 0 ? "there are no fragments"
+                        : abufferPixels(lists, world.size) == 0 ? "there is no view to march in"
+                                                                : nullptr;
+    if (empty != nullptr) {
+        declareEmpty(declaration, lists, world, demand, empty);
+        return declaration;
+    }
+    std::vector<Module> modules;
+    for (const char* port : {"tracer", "hits"})
+        if (demand.reads(port)) modules.push_back(moduleOf(port, world, lists));
+    std::vector<Use> read = {{.port = "pixels", .access = Access::Image},
+                             {.port = "nodes", .access = Access::Image}};
+    if (primitive) {
+        read = declarePrimitiveRecords(declaration, world, lists, demand);
+        declaration.leftOut.push_back({"fragments", "`record` primitive keeps triangles in place of them"});
+        declaration.depends |=
+            Causes::Camera | Causes::Cut | Causes::Geometry | Causes::Transforms | Causes::Size;
+    }
+    if (hierarchical())
+        declareBlockBounds(declaration, world, lists, primitive,
+                           primitive ? std::vector<Use>{read.front()} : read);
+    if (march == ABufferMarching::Hierarchical && !skipping)
+        declaration.leftOut.push_back({"blocks of pixels", "nothing is to be skipped"});
+    Step clear{.name = "clear", .run = [](Commands& commands) { exhaustion::clear(commands); }};
+    for (Module& module : modules) {
+        module.uses = read;
+        if (hierarchical()) module.uses.push_back({.port = "block_bounds", .access = Access::Image});
+        if (!primitive && lists.decoupled && module.port == "tracer" &&
+            (demand.requests("tracer") & requests::Surface) != 0)
+            module.uses.push_back({.port = "data", .access = Access::Image});
+        if (!countExhausted) continue;
+        if (&module == &modules.front()) {
+            exhaustion::declare(declaration, module, clear);
+        } else {
+            module.defines.emplace("COUNT_EXHAUSTED", "1");
+            module.uses.push_back({.port = "exhausted", .access = Access::Storage, .write = true});
         }
     }
-    declaration.modules.push_back(std::move(tracer));
-    declareFragmentLayers(world, inputs, demand, declaration);
-    declaration.depends = declaration.depends | Causes::Properties;
+    if (countExhausted) declaration.steps.push_back(std::move(clear));
+    for (Module& module : modules) declaration.modules.push_back(std::move(module));
     return declaration;
 }
 
-void ABuffer::declareFragments(Declaration&, const Inputs& inputs, const Demand& demand,
-                               Module& tracer) const {
-    tracer.uses = {{.port = "pixels", .access = Access::Image}, {.port = "nodes", .access = Access::Image}};
-    if (inputs["nodes"].desc.lists.decoupled && (demand.requests("tracer") & requests::Surface) != 0)
-        tracer.uses.push_back({.port = "data", .access = Access::Image});
-    tracer.defines.emplace("THICKNESS", floatText(thickness));
-    tracer.defines.emplace("OFFSET", floatText(offset));
+Module ABuffer::moduleOf(const char* port, const World& world, const FragmentLists& lists) const {
+    const bool primitive = record == ABufferRecord::Primitive;
+    Module module{.port = port,
+                  .shader = primitive ? "abuffer/primitives.glsl" : "abuffer/abuffer.glsl",
+                  .defines = abufferDefines(lists, world.size)};
+    module.defines.emplace(std::string(port) == "hits" ? "PROVIDES_HITS" : "PROVIDES_TRACER", "1");
+    module.defines.emplace("LEVELS", std::to_string(hierarchical() ? blockLevels : 1));
+    module.defines.emplace("SAMPLES", std::to_string(march == ABufferMarching::Fixed ? steps : 0));
+    module.defines.emplace("BUDGET", std::to_string(budget));
+    if (skipping) module.defines.emplace("SKIPPING", "1");
+    if (primitive) {
+        if (world.facts.hasMasked) module.defines.emplace("MATERIAL_MASKED", "1");
+        return module;
+    }
+    if (layering == ABufferExtent::Single) module.defines.emplace("SINGLE_LAYER", "1");
+    module.defines.emplace("THICKNESS", floatText(thickness));
+    module.defines.emplace("OFFSET", floatText(offset));
+    return module;
+}
+
+void ABuffer::declareEmpty(Declaration& declaration, const FragmentLists& lists, const World& world,
+                           const Demand& demand, const char* why) const {
+    declaration.leftOut.push_back({"marching", why});
+    for (const char* port : {"tracer", "hits"}) {
+        if (!demand.reads(port)) continue;
+        Module module{
+            .port = port, .shader = "abuffer/abuffer.glsl", .defines = abufferDefines(lists, world.size)};
+        module.defines.emplace(std::string(port) == "hits" ? "PROVIDES_HITS" : "PROVIDES_TRACER", "1");
+        module.defines.emplace("EMPTY", "1");
+        declaration.modules.push_back(std::move(module));
+    }
 }
 
 } // namespace kestrel

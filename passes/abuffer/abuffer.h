@@ -8,6 +8,8 @@
 namespace kestrel {
 
 enum class ABufferRecord : std::uint8_t { Fragment, Primitive };
+enum class ABufferMarching : std::uint8_t { Exhaustive, Fixed, Hierarchical };
+enum class ABufferExtent : std::uint8_t { Multi, Single };
 
 class ABuffer final : public Pass {
 public:
@@ -16,13 +18,19 @@ public:
                                       const Demand& demand) const override;
 
     ABufferRecord record = ABufferRecord::Fragment;
+    ABufferMarching march = ABufferMarching::Exhaustive;
+    ABufferExtent views = ABufferExtent::Multi, layering = ABufferExtent::Multi;
+    int steps = 100;
     bool skipping = true;
     double thickness = 1, offset = 1.5;
     bool countExhausted = false;
 
 private:
-    void declareFragments(Declaration& declaration, const Inputs& inputs, const Demand& demand,
-                          Module& tracer) const;
+    // What both modules have in common, by what is asked of them.
+    [[nodiscard]] Module moduleOf(const char* port, const World& world, const FragmentLists& lists) const;
+    [[nodiscard]] bool hierarchical() const { return march == ABufferMarching::Hierarchical && skipping; }
+    void declareEmpty(Declaration& declaration, const FragmentLists& lists, const World& world,
+                      const Demand& demand, const char* why) const;
 };
 
 } // namespace kestrel

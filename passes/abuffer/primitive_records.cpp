@@ -168,8 +168,8 @@ private:
 
 } // namespace
 
-void declarePrimitiveRecords(Declaration& declaration, Module& module, const World& world,
-                             const FragmentLists& lists, const Demand& demand) {
+std::vector<Use> declarePrimitiveRecords(Declaration& declaration, const World& world,
+                                         const FragmentLists& lists, const Demand& demand) {
     const Sizes sizes = sizesOf(world, lists, demand);
     const auto limit = static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
     const auto texels = [&](const char* port, std::uint64_t count, Format format) -> Output& {
@@ -217,8 +217,7 @@ void declarePrimitiveRecords(Declaration& declaration, Module& module, const Wor
                                        .counter = list,
                                        .capacity = capacity});
     for (Step& step : RecordSteps(world, lists, sizes).all()) declaration.steps.push_back(std::move(step));
-    module.uses.push_back({.port = "cells", .access = Access::Image});
-    module.uses.push_back({.port = "records", .access = Access::Image});
+    return {{.port = "cells", .access = Access::Image}, {.port = "records", .access = Access::Image}};
 }
 
 } // namespace kestrel

@@ -26,9 +26,9 @@ Describe<T>& addPrimitiveRecords(Describe<T>& table) {
         .internal("tiles", PortKind::Buffer, "Tiles of those");
 }
 
-// Declares the records of the views and buckets of `lists`: what `module` reads of them, the buffers, and the
-// steps that make them, in the group "records".
-void declarePrimitiveRecords(Declaration& declaration, Module& module, const World& world,
-                             const FragmentLists& lists, const Demand& demand);
+// Declares the records of the views and buckets of `lists`: the buffers, and the steps that make them, in the
+// group "records". What a module reads of them, `cells` first.
+std::vector<Use> declarePrimitiveRecords(Declaration& declaration, const World& world,
+                                         const FragmentLists& lists, const Demand& demand);
 
 } // namespace kestrel

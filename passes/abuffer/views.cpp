@@ -47,6 +47,7 @@ Defines abufferDefines(const FragmentLists& lists, const Extent& frame) {
         {"NODE_WORDS", std::to_string(abufferNodeWords(lists))},
         {"MAIN_PIXELS", std::to_string(mainPixels)},
         {"MAIN_WIDTH", std::to_string(frame.width)},
+        {"MAIN_SIZE", lists.mainView ? fmt::format("ivec2({}, {})", frame.width, frame.height) : "ivec2(0)"},
         {"SIDE", std::to_string(lists.side)},
         {"NEAR_PLANE", fmt::format("uintBitsToFloat({}u)", std::bit_cast<std::uint32_t>(lists.nearPlane))}};
     if (bucketed) defines.emplace("BUCKETED", "1");

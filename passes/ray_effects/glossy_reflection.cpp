@@ -56,7 +56,7 @@ Declaration GlossyReflection::declare(const World& world, const Inputs& inputs, 
         .modules = {{"tracer", requests::ClosestHit | (surfaces ? requests::Surface : 0)}, {"radiance", 0}}};
     if (surfaces) step.defines.emplace("REQUIRES_SURFACE", "1");
     useFaceNormal(declaration, step, inputs);
-    declaration.steps = raySteps(std::move(step), rays, world.facts);
+    declaration.steps = raySteps(std::move(step), rays, inputs["tracer"].desc, world.facts);
     declaration.depends = Causes::Frame;
     return declaration;
 }

@@ -125,7 +125,7 @@ Declaration SoftShadow::declare(const World& world, const Inputs& inputs, const 
     if (spheres) step.defines.emplace("SPHERE_EMITTERS", "1");
     if (approximate) step.defines.emplace("APPROXIMATE", "1");
     useFaceNormal(declaration, step, inputs);
-    std::vector<Step> steps = raySteps(std::move(step), rays, world.facts);
+    std::vector<Step> steps = raySteps(std::move(step), rays, inputs["tracer"].desc, world.facts);
     if (tellsVisibility) { // of the sums of all steps
         steps.back().defines.emplace("VISIBILITY", "1");
         steps.back().uses.push_back({.port = "visibility", .access = Access::Image, .write = true});

@@ -11,6 +11,7 @@
 #include "lib/tracer.glsl"
 #include "lib/iterations.glsl"
 #include "shared/abuffer.h"
+#include "shared/random.h"
 #include "shared/view.h"
 
 // Which views there are: the frame's (0), and with a side the six faces of the cube (1 + face).
@@ -42,12 +43,27 @@ struct ABufferMarch {
     ivec2 pixel;
     ivec2 way; // the signs that hold for all of it in the view
     bool inside;
-    // In the pixel, or in a block of pixels: the times at which it meets the borders ahead, when it leaves, and its depths.
+    // In the pixel, or in a block of 4^level times 4^level pixels: the borders ahead and the times at which it meets them, when
+    // it leaves, and its depths.
+    int level;
     ivec2 border;
     vec2 times;
     float next;
     float from;
     float to;
+    // With a fixed number of samples: its way over the view in equal parts, each looked at in one pixel.
+    vec2 first;
+    vec2 last;
+    int parts;
+    int part;
+    float jitter; // where in each part, [0, 1)
+};
+
+// How a ray passes a view: pixel by pixel, by blocks of pixels where there are `levels` of them, or, with `samples` other than 0,
+// looking at so many pixels at most. Constants, so that a program has only what it runs.
+struct ABufferSteps {
+    int levels;
+    int samples;
 };
 
 // A place `q` from the frame's eye in a view, or with `place` 0 a direction.
@@ -79,7 +95,10 @@ float abufferNear(ViewData frame, ABufferShape shape, uint view) { return view =
 // By how much each of a view's planes is on the right side of a place: left, right, lower, upper.
 vec4 abufferSides(vec4 p) { return vec4(p.z + p.x, p.z - p.x, p.z + p.y, p.z - p.y); }
 
-bool abufferContains(vec4 p, float nearPlane) { return all(greaterThanEqual(abufferSides(p), vec4(0.0))) && p.w >= nearPlane; }
+// Rays begin on the near plane, as far as float can tell.
+bool abufferContains(vec4 p, float nearPlane) {
+    return all(greaterThanEqual(abufferSides(p), vec4(0.0))) && p.w >= 0.9999 * nearPlane;
+}
 
 // The time at which the ray leaves the view, after which it is on the wrong side of one of its planes.
 float abufferLeaves(ABufferRay ray, float nearPlane) {
@@ -109,6 +128,13 @@ uint abufferViewAt(ViewData frame, ABufferShape shape, vec3 origin, vec3 directi
     return 1u + abufferFaceOf(place + abufferOnward(shape) * direction);
 }
 
+// The same for a ray whenever it is traced.
+float abufferJitter(vec3 origin, vec3 direction) {
+    uvec3 a = floatBitsToUint(origin);
+    uvec3 b = floatBitsToUint(direction);
+    return unitFloat(hashCombine(hashCombine(hashCombine(a.x, a.y), hashCombine(a.z, b.x)), hashCombine(b.y, b.z)));
+}
+
 // A ray from `view` on. Of the frame's view alone it may come in from without.
 ABufferMarch abufferMarch(ViewData frame, ABufferShape shape, uint view, vec3 origin, vec3 direction, float tMin, float tMax) {
     ABufferMarch march;
@@ -118,6 +144,7 @@ ABufferMarch abufferMarch(ViewData frame, ABufferShape shape, uint view, vec3 or
     march.t = tMin;
     march.view = view;
     march.views = tMin <= tMax ? 8 : 0;
+    march.jitter = abufferJitter(origin, direction);
     if (shape.side == 0)
         march.t = max(tMin, abufferArrives(abufferRay(frame, 0.0, 0u, origin, direction), frame.nearPlane));
     return march;
@@ -127,15 +154,30 @@ ivec2 abufferPixelAt(vec4 place, ivec2 size) {
     return clamp(ivec2(floor(clamp(place.xy / place.z * 0.5 + 0.5, 0.0, 1.0) * vec2(size))), ivec2(0), size - 1);
 }
 
+// Divides the rest of its way over the view, from march.t to its end, into at most `samples` parts, equal on the view's plane.
+void abufferDivide(inout ABufferMarch march, int samples) {
+    vec4 from = march.ray.at + march.t * march.ray.add;
+    vec4 to = march.ray.at + march.end * march.ray.add;
+    march.first = from.xy / from.z;
+    // Without end it goes to its vanishing point; of parallel rays that is where it is.
+    bool endless = march.end == rayInfinity;
+    march.last = endless ? (march.ray.add.z != 0.0 ? march.ray.add.xy / march.ray.add.z : march.first) : to.xy / to.z;
+    vec2 pixels = 0.5 * abs(march.last - march.first) * vec2(march.size);
+    march.parts = int(clamp(ceil(max(pixels.x, pixels.y)), 1.0, float(samples)));
+    march.part = 0;
+}
+
 // Into march.view.
-void abufferEnter(inout ABufferMarch march, ViewData frame, ABufferShape shape) {
+void abufferEnter(inout ABufferMarch march, ViewData frame, ABufferShape shape, ABufferSteps steps) {
     march.ray = abufferRay(frame, shape.nearPlane, march.view, march.origin, march.direction);
     march.size = abufferSize(frame, shape, march.view);
     march.end = min(march.tMax, abufferLeaves(march.ray, abufferNear(frame, shape, march.view)));
     march.pixel = abufferPixelAt(march.ray.at + march.t * march.ray.add, march.size);
     march.way = ivec2(sign(march.ray.add.xy * march.ray.at.z - march.ray.at.xy * march.ray.add.z));
     march.inside = march.t < march.end;
+    march.level = 0;
     --march.views;
+    if (steps.samples > 0) abufferDivide(march, steps.samples);
 }
 
 // On from a view that has been left, to the next or to the ray's end.
@@ -154,13 +196,15 @@ void abufferTurn(inout ABufferMarch march, ABufferShape shape) {
     march.view = 1u + abufferFaceOf(place);
 }
 
-// When the ray meets the borders of these numbers, 0 the left or lower one of the view; never where it goes the other way, or
-// comes to an end at its vanishing point before.
+// When the ray meets the lines at these places of the view's plane.
+vec2 abufferMeets(ABufferRay ray, vec2 at) { return (at * ray.at.z - ray.at.xy) / (ray.add.xy - at * ray.add.z); }
+
+// When it meets the borders of these numbers, 0 the left or lower one of the view; never where it goes the other way, or comes
+// to an end at its vanishing point before.
 vec2 abufferTimes(ABufferMarch march, ivec2 border) {
     vec2 at = 2.0 * vec2(border) / vec2(march.size) - 1.0;
     vec2 towards = march.ray.add.xy - at * march.ray.add.z;
-    return mix(vec2(rayInfinity), (at * march.ray.at.z - march.ray.at.xy) / towards,
-               greaterThan(towards * vec2(march.way), vec2(0.0)));
+    return mix(vec2(rayInfinity), abufferMeets(march.ray, at), greaterThan(towards * vec2(march.way), vec2(0.0)));
 }
 
 // From march.t to `next`: the depths there. A ray without end goes out of every interval of depths.
@@ -171,36 +215,29 @@ void abufferUntil(inout ABufferMarch march, float next) {
     march.to = next < rayInfinity ? march.ray.at.w + next * march.ray.add.w : beyond;
 }
 
-// Looks ahead to the end of the pixel, or of its block of 4^level times 4^level pixels.
-void abufferAhead(inout ABufferMarch march, int level) {
-    int shift = 2 * level;
+// Looks ahead to the end of the pixel or block, or of the part.
+void abufferAhead(inout ABufferMarch march, ABufferSteps steps) {
+    if (steps.samples > 0) {
+        vec2 sampled = mix(march.first, march.last, (float(march.part) + march.jitter) / float(march.parts));
+        march.pixel = abufferPixelAt(vec4(sampled, 1.0, 0.0), march.size);
+        vec2 times = abufferMeets(march.ray, mix(march.first, march.last, float(march.part + 1) / float(march.parts)));
+        vec2 way = abs(march.last - march.first) * vec2(march.size);
+        float met = way.x >= way.y ? times.x : times.y;
+        bool ends = march.part + 1 >= march.parts || !(met < march.end);
+        abufferUntil(march, ends ? march.end : max(march.t, met));
+        return;
+    }
+    int shift = steps.levels > 1 ? 2 * march.level : 0;
     march.border = min(((march.pixel >> shift) + max(march.way, ivec2(0))) << shift, march.size);
     march.times = abufferTimes(march, march.border);
     abufferUntil(march, max(march.t, min(min(march.times.x, march.times.y), march.end)));
 }
 
-// To the next pixel.
-void abufferCross(inout ABufferMarch march) {
-    march.t = march.next;
-    if (march.times.x <= march.times.y) {
-        march.pixel.x += march.way.x;
-    } else {
-        march.pixel.y += march.way.y;
-    }
-    march.inside = march.next < march.end && all(greaterThanEqual(march.pixel, ivec2(0))) && all(lessThan(march.pixel, march.size));
-}
-
-// Out of the block that abufferAhead() looked through, into the very pixel that stepping through it would lead to: the place
-// says nearly which, the times at which the borders about it are met say it exactly.
-void abufferCrossBlock(inout ABufferMarch march, int level) {
-    int shift = 2 * level;
+// The pixel of a block, entered through the pixel that march.pixel is, from which stepping through it would leave it along x or
+// y at the time `met`: the place says nearly which, the times at which the borders about it are met say it exactly.
+ivec2 abufferLeft(ABufferMarch march, int shift, bool alongX, float met) {
     ivec2 low = (march.pixel >> shift) << shift;
     ivec2 high = min(low + (1 << shift), march.size) - 1;
-    bool alongX = march.times.x <= march.times.y;
-    float met = alongX ? march.times.x : march.times.y;
-    march.t = march.next;
-    march.inside = march.next < march.end;
-    if (!march.inside) return;
     ivec2 pixel = clamp(abufferPixelAt(march.ray.at + march.t * march.ray.add, march.size), low, high);
     for (int i = 0; i < 2; ++i) {
         ITERATION;
@@ -212,7 +249,52 @@ void abufferCrossBlock(inout ABufferMarch march, int level) {
         pixel += march.way * (ivec2(on) - ivec2(back) * ivec2(not(on)));
         pixel = clamp(pixel, low, high);
     }
-    march.pixel = alongX ? ivec2(march.way.x > 0 ? march.border.x : march.border.x - 1, pixel.y)
-                         : ivec2(pixel.x, march.way.y > 0 ? march.border.y : march.border.y - 1);
-    march.inside = all(greaterThanEqual(march.pixel, ivec2(0))) && all(lessThan(march.pixel, march.size));
+    return pixel;
+}
+
+// Over what abufferAhead() looked through.
+void abufferCross(inout ABufferMarch march, ABufferSteps steps) {
+    march.t = march.next;
+    if (steps.samples > 0) {
+        ++march.part;
+        march.inside = march.part < march.parts && march.t < march.end;
+        return;
+    }
+    bool alongX = march.times.x <= march.times.y;
+    ivec2 pixel = march.pixel;
+    int border = alongX ? march.border.x : march.border.y;
+    if (steps.levels > 1) {
+        int shift = 2 * march.level;
+        if (march.level > 0) pixel = abufferLeft(march, shift, alongX, alongX ? march.times.x : march.times.y);
+        // Up where a larger block begins.
+        if (((border >> shift) & 3) == 0) march.level = min(march.level + 1, steps.levels - 1);
+    }
+    if (alongX) {
+        pixel.x = border - (march.way.x > 0 ? 0 : 1);
+    } else {
+        pixel.y = border - (march.way.y > 0 ? 0 : 1);
+    }
+    march.pixel = pixel;
+    march.inside = march.next < march.end && all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, march.size));
+}
+
+// Blocks of a level in all views; `mainSize`: pixels of the frame's view, if it is there.
+int abufferBlocks(ABufferShape shape, ivec2 mainSize, int level) {
+    ivec2 main = (mainSize + (1 << (2 * level)) - 1) >> (2 * level);
+    int side = (shape.side + (1 << (2 * level)) - 1) >> (2 * level);
+    return main.x * main.y + int(abufferFaces) * side * side;
+}
+
+// The number of the block, or pixel, that the ray is in: level 0 of all views comes first, then level 1 of all, and so on up to
+// level 3, each view in rows.
+int abufferBlock(ABufferMarch march, ABufferShape shape, ivec2 mainSize) {
+    int first = (march.level > 0 ? abufferBlocks(shape, mainSize, 0) : 0) +
+                (march.level > 1 ? abufferBlocks(shape, mainSize, 1) : 0) +
+                (march.level > 2 ? abufferBlocks(shape, mainSize, 2) : 0);
+    int shift = 2 * march.level;
+    ivec2 main = (mainSize + (1 << shift) - 1) >> shift;
+    int side = (shape.side + (1 << shift) - 1) >> shift;
+    ivec2 at = march.pixel >> shift;
+    if (march.view == 0u) return first + at.y * main.x + at.x;
+    return first + main.x * main.y + (int(march.view - 1u) * side + at.y) * side + at.x;
 }

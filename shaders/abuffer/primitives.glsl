@@ -21,6 +21,9 @@ layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
 
 layout(r32ui) uniform readonly uimageBuffer M(cells);
 layout(rgba32ui) uniform readonly uimageBuffer M(records);
+#if LEVELS > 1
+layout(r32ui) uniform readonly uimageBuffer M(block_bounds);
+#endif
 layout(std140) uniform M(CellsView) { ViewData M(view); };
 
 void M(aim)(inout Ray ray) {}
@@ -34,24 +37,63 @@ ABufferMarch M(begin)(vec3 origin, Ray ray) {
     return abufferMarch(M(view), ABUFFER_SHAPE, view, fromEye, ray.direction, ray.tMin, ray.tMax);
 }
 
-// The records of the pixel that the ray may meet there: [x, y), which is none where its depths are others.
-uvec2 M(recordsAhead)(ABufferMarch march, out vec2 depths, out int firstBucket) {
-    // Either end may be off by what a place along the ray is rounded by.
-    float doubt = 2e-6 * (abs(march.ray.at.w) + min(max(abs(march.from), abs(march.to)), 1.0e30));
-    depths = vec2(min(march.from, march.to) - doubt, max(march.from, march.to) + doubt);
-    int pixel = ABUFFER_PIXEL(march.view, march.pixel);
-    firstBucket = 0;
-#ifdef SKIPPING
-    float zMin = uintBitsToFloat(imageLoad(M(cells), pixel * PRIMITIVE_WORDS).r);
-    float zMax = uintBitsToFloat(imageLoad(M(cells), pixel * PRIMITIVE_WORDS + 1).r);
-    if (zMax < depths.x || zMin > depths.y) return uvec2(0u);
-    firstBucket = int(abufferBucket(depths.x, zMin, zMax, uint(BUCKETS)));
-    int lastBucket = int(abufferBucket(depths.y, zMin, zMax, uint(BUCKETS)));
-#else
-    int lastBucket = BUCKETS - 1;
+const ABufferSteps M(steps) = ABufferSteps(LEVELS, SAMPLES);
+
+void M(countRay)(bool exhausted) {
+#ifdef COUNT_EXHAUSTED
+    atomicAdd(M(exhausted)[0], 1u);
+    if (exhausted) atomicAdd(M(exhausted)[1], 1u);
 #endif
-    return uvec2(imageLoad(M(cells), PRIMITIVE_BEGIN(pixel, firstBucket)).r,
-                 imageLoad(M(cells), PRIMITIVE_BEGIN(pixel, lastBucket + 1)).r);
+}
+
+// The depths that the ray has ahead, either end off by what a place along it may be rounded by.
+vec2 M(depthsAhead)(ABufferMarch march) {
+    float doubt = 2e-6 * (abs(march.ray.at.w) + min(max(abs(march.from), abs(march.to)), 1.0e30));
+    return vec2(min(march.from, march.to) - doubt, max(march.from, march.to) + doubt);
+}
+
+vec2 M(boundsOf)(int pixel) {
+    return uintBitsToFloat(uvec2(imageLoad(M(cells), pixel * PRIMITIVE_WORDS).r, imageLoad(M(cells), pixel * PRIMITIVE_WORDS + 1).r));
+}
+
+// To the next pixel that has records where the ray is; false if the view is left before. A loop of its own, and nothing but the
+// bounds in it: on a driver that runs both sides of every branch a loop is all that can be left early.
+bool M(goesOn)(inout ABufferMarch march) {
+    while (march.inside) {
+        ITERATION;
+        ++M(spent);
+        abufferAhead(march, M(steps));
+#ifdef SKIPPING
+        vec2 depths = M(depthsAhead)(march);
+#if LEVELS > 1
+        int block = 2 * abufferBlock(march, ABUFFER_SHAPE, MAIN_SIZE);
+        vec2 bounds = uintBitsToFloat(uvec2(imageLoad(M(block_bounds), block).r, imageLoad(M(block_bounds), block + 1).r));
+#else
+        vec2 bounds = M(boundsOf)(ABUFFER_PIXEL(march.view, march.pixel));
+#endif
+        bool skips = bounds.y < depths.x || bounds.x > depths.y;
+        if (!skips && march.level == 0) break;
+        if (M(spent) > uint(BUDGET)) break;
+        if (skips) {
+            abufferCross(march, M(steps));
+        } else {
+            --march.level;
+        }
+#else
+        break;
+#endif
+    }
+    return march.inside;
+}
+
+// The buckets of the ray's pixel that it may meet something in: first and last.
+ivec2 M(bucketsAhead)(int pixel, vec2 depths) {
+#ifdef SKIPPING
+    vec2 bounds = M(boundsOf)(pixel);
+    return ivec2(abufferBucket(depths.x, bounds.x, bounds.y, uint(BUCKETS)), abufferBucket(depths.y, bounds.x, bounds.y, uint(BUCKETS)));
+#else
+    return ivec2(0, BUCKETS - 1);
+#endif
 }
 
 // Goes on from record `at` to the next that is worth a test; its triangle. A loop of its own: it is all that can be left early
@@ -103,22 +145,23 @@ M(Nearest) M(traverse)(Ray ray, bool stopAtFirst) {
     while (march.views > 0 && !done) {
         ITERATION;
         ++M(spent);
-        abufferEnter(march, M(view), ABUFFER_SHAPE);
-        while (march.inside) {
+        abufferEnter(march, M(view), ABUFFER_SHAPE, M(steps));
+        while (M(goesOn)(march)) {
             ITERATION;
             exhausted = ++M(spent) > uint(BUDGET);
             if (exhausted) break;
-            abufferAhead(march, 0);
-            vec2 depths;
-            int firstBucket;
-            uvec2 range = M(recordsAhead)(march, depths, firstBucket);
-            while (range.x < range.y) {
+            vec2 depths = M(depthsAhead)(march);
+            int pixel = ABUFFER_PIXEL(march.view, march.pixel);
+            ivec2 buckets = M(bucketsAhead)(pixel, depths);
+            uint at = imageLoad(M(cells), PRIMITIVE_BEGIN(pixel, buckets.x)).r;
+            uint end = imageLoad(M(cells), PRIMITIVE_BEGIN(pixel, buckets.y + 1)).r;
+            while (at < end) {
                 ITERATION;
                 ++M(spent);
-                uint bucket;
-                uint triangle = M(nextTriangle)(range.x, range.y, depths, bucket);
-                if (range.x == range.y) break;
-                ++range.x;
+                uint firstBucket;
+                uint triangle = M(nextTriangle)(at, end, depths, firstBucket);
+                if (at == end) break;
+                ++at;
                 TriangleHit hit;
                 // Among hits at one distance the lowest triangle counts.
                 if (M(test)(triangle, sheared, ray.tMin, nearest.t, hit) &&
@@ -128,15 +171,16 @@ M(Nearest) M(traverse)(Ray ray, bool stopAtFirst) {
             }
             done = nearest.found && (stopAtFirst || nearest.t < march.next);
             if (done) break;
-            abufferCross(march);
+            abufferCross(march, M(steps));
         }
         done = done || exhausted;
-        if (!done) abufferTurn(march, ABUFFER_SHAPE);
+        if (!done) {
+            // Where the rest of the view was skipped the hit may lie behind.
+            done = nearest.found && nearest.t < march.t;
+            abufferTurn(march, ABUFFER_SHAPE);
+        }
     }
-#ifdef COUNT_EXHAUSTED
-    atomicAdd(M(exhausted)[0], 1u);
-    if (exhausted) atomicAdd(M(exhausted)[1], 1u);
-#endif
+    M(countRay)(exhausted);
     // It ends there as if it had hit something.
     if (exhausted && !nearest.found) nearest = M(Nearest)(march.t, vec2(0.0), noTriangle, true);
     return nearest;
@@ -160,3 +204,54 @@ Surface M(surface)(Ray ray, Hit hit) {
 #endif
 
 #endif // PROVIDES_TRACER
+
+#ifdef PROVIDES_HITS
+
+void M(all)(Ray ray) {
+    vec3 origin = offFace(ray.origin, ray.normal);
+    TriangleRay sheared = triangleRay(origin, ray.direction);
+    bool stopped = false;
+    bool exhausted = false;
+    ABufferMarch march = M(begin)(origin, ray);
+    while (march.views > 0 && !stopped) {
+        ITERATION;
+        ++M(spent);
+        abufferEnter(march, M(view), ABUFFER_SHAPE, M(steps));
+        while (M(goesOn)(march)) {
+            ITERATION;
+            exhausted = ++M(spent) > uint(BUDGET);
+            stopped = exhausted;
+            vec2 depths = M(depthsAhead)(march);
+            int pixel = ABUFFER_PIXEL(march.view, march.pixel);
+            ivec2 buckets = M(bucketsAhead)(pixel, depths);
+            for (int bucket = buckets.x; bucket <= buckets.y && !stopped; ++bucket) {
+                ITERATION;
+                ++M(spent);
+                uint at = imageLoad(M(cells), PRIMITIVE_BEGIN(pixel, bucket)).r;
+                uint end = imageLoad(M(cells), PRIMITIVE_BEGIN(pixel, bucket + 1)).r;
+                while (at < end && !stopped) {
+                    ITERATION;
+                    ++M(spent);
+                    uint firstBucket;
+                    uint triangle = M(nextTriangle)(at, end, depths, firstBucket);
+                    if (at == end) break;
+                    ++at;
+                    TriangleHit hit;
+                    bool met = M(test)(triangle, sheared, ray.tMin, ray.tMax, hit);
+                    // In the first of its buckets that is looked at, in the pixel in which its time lies.
+                    bool here = bucket == max(buckets.x, int(firstBucket)) && hit.t >= march.t &&
+                                (hit.t < march.next || march.next >= march.tMax);
+                    if (met && here)
+                        stopped = M(visit)(ray, Hit(hit.t, 0.0, 0u, uvec2(triangle, packUnorm2x16(vec2(hit.u, hit.v)))));
+                }
+            }
+            stopped = stopped || march.next > ray.tMax;
+            if (stopped) break;
+            abufferCross(march, M(steps));
+        }
+        if (!stopped) abufferTurn(march, ABUFFER_SHAPE);
+    }
+    M(countRay)(exhausted);
+}
+
+#endif // PROVIDES_HITS

@@ -127,17 +127,7 @@ TEST_F(ABufferPrimitives, NoTriangleIsLostWhateverItsShape) {
             corners.insert(corners.end(),
                            {a * glm::vec3(1, 0, 1), b * glm::vec3(1, 0, 1), c * glm::vec3(1, 0, 1)});
     }
-    Scene scene = trianglesScene(corners);
-    Camera camera;
-    camera.name = "among them";
-    Node node;
-    node.camera = 0;
-    node.translation = {0.1f, 0, 0.2f}; // in the plane of a quarter of them
-    camera.node = static_cast<int>(scene.nodes.size());
-    scene.cameras = {camera};
-    scene.nodes.push_back(node);
-    scene.roots.push_back(static_cast<int>(scene.nodes.size()) - 1);
-    finishScene(scene);
+    const Scene scene = seenFrom({0.1f, 0, 0.2f}, corners); // in the plane of a quarter of them
     std::vector<shared::RayRecord> rays;
     for (size_t i = 0; i < corners.size(); i += 3)
         for (int k = 0; k < 20; ++k) {

@@ -52,24 +52,14 @@ struct ABufferRays : TracedTest {
     }
 };
 
-// Six walls about the camera, which stands off the middle.
-inline Scene room() {
-    std::vector<glm::vec3> corners;
-    for (int axis = 0; axis < 3; ++axis)
-        for (const float side : {-1.0f, 1.0f})
-            for (const glm::vec3& p : square()) {
-                glm::vec3 corner;
-                corner[axis] = side;
-                corner[(axis + 1) % 3] = p.x;
-                corner[(axis + 2) % 3] = p.y;
-                corners.push_back(corner);
-            }
-    Scene scene = trianglesScene(corners);
+// A scene of triangles with the eye in this place, looking along -z.
+inline Scene seenFrom(const glm::vec3& eye, std::vector<glm::vec3> corners) {
+    Scene scene = trianglesScene(std::move(corners));
     Camera camera;
     camera.name = "inside";
     Node node;
     node.camera = 0;
-    node.translation = {0.13f, -0.21f, 0.3f};
+    node.translation = eye;
     camera.node = static_cast<int>(scene.nodes.size());
     scene.cameras = {camera};
     scene.nodes.push_back(node);
@@ -77,6 +67,28 @@ inline Scene room() {
     finishScene(scene);
     return scene;
 }
+
+// The square of half width 1 on an axis, at this place along it.
+inline void addWall(std::vector<glm::vec3>& corners, int axis, float at) {
+    for (const glm::vec3& p : square()) {
+        glm::vec3 corner;
+        corner[axis] = at;
+        corner[(axis + 1) % 3] = p.x;
+        corner[(axis + 2) % 3] = p.y;
+        corners.push_back(corner);
+    }
+}
+
+// Six walls about the eye.
+inline std::vector<glm::vec3> roomWalls() {
+    std::vector<glm::vec3> corners;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float side : {-1.0f, 1.0f}) addWall(corners, axis, side);
+    return corners;
+}
+
+// With the eye off the middle.
+inline Scene room() { return seenFrom({0.13f, -0.21f, 0.3f}, roomWalls()); }
 
 // Distance along a ray from within to the walls.
 inline float toWall(const glm::vec3& origin, const glm::vec3& direction) {

@@ -65,28 +65,76 @@ TEST_F(ABufferRays, SkippingAndStructureChangeNoHit) {
     size_t found = 0;
     for (const shared::HitRecord& hit : expected) found += hit.t < INFINITY ? 1 : 0;
     EXPECT_GT(found, expected.size() / 5);
+    const auto expectEqual = [&](const std::vector<std::string>& settings) {
+        const auto given = hits(scene, "hemisphere.rays", settings).abuffer;
+        size_t different = 0;
+        for (size_t i = 0; i < expected.size(); ++i)
+            different += given[i].t == expected[i].t && given[i].source == expected[i].source ? 0 : 1;
+        std::string what;
+        for (const std::string& setting : settings) what += setting + " ";
+        EXPECT_EQ(different, 0u) << what;
+    };
     for (const char* structure : {"sb", "ll", "dll", "llb", "dllb"})
-        for (const char* decoupled : {"true", "false"})
-            for (const int buckets : {1, 4, 16})
-                for (const char* skipping : {"true", "false"}) {
-                    const bool bucketed = std::string(structure).ends_with("lb");
-                    if (bucketed ? buckets == 1 : buckets > 1) continue;
-                    // What differs is the structure's own; that data lies elsewhere is seen with two of them.
-                    if (std::string(decoupled) == "false" && (bucketed || std::string(skipping) == "false"))
-                        continue;
-                    const auto given = hits(scene, "hemisphere.rays",
-                                            {fmt::format("abuffer.skipping={}", skipping),
-                                             fmt::format("store.structure={}", structure),
-                                             fmt::format("store.decoupled={}", decoupled),
-                                             fmt::format("store.buckets={}", buckets)})
-                                           .abuffer;
-                    size_t different = 0;
-                    for (size_t i = 0; i < expected.size(); ++i)
-                        different +=
-                            given[i].t == expected[i].t && given[i].source == expected[i].source ? 0 : 1;
-                    EXPECT_EQ(different, 0u) << structure << " decoupled " << decoupled << ", " << buckets
-                                             << " buckets, skipping " << skipping;
-                }
+        for (const int buckets : {1, 4, 16}) {
+            const bool bucketed = std::string(structure).ends_with("lb");
+            if (bucketed ? buckets == 1 : buckets > 1) continue;
+            const std::vector<std::string> store = {fmt::format("store.structure={}", structure),
+                                                    fmt::format("store.buckets={}", buckets)};
+            for (const char* form :
+                 {"abuffer.skipping=false", "abuffer.skipping=true", "abuffer.march=hierarchical"})
+                expectEqual({store[0], store[1], form});
+            // That data lies elsewhere is seen with the others.
+            if (!bucketed) expectEqual({store[0], "store.decoupled=false"});
+        }
+}
+
+// Looking at fewer pixels, views or layers finds less.
+TEST_F(ABufferRays, FewerStepsViewsAndLayersFindLess) {
+    const Scene hall = loadScene("builtin:hall?detail=0.3"),
+                lattice = loadScene("builtin:lattice?detail=0.3");
+    for (const char* record : {"fragment", "primitive"}) {
+        const bool primitive = std::string(record) == "primitive";
+        const auto share = [&](const Scene& scene, std::vector<std::string> settings) {
+            settings.push_back(fmt::format("abuffer.record={}", record));
+            settings.emplace_back("abuffer.thickness=8");
+            const Hits found = hits(scene, "hemisphere.rays", settings);
+            EXPECT_EQ(found.exhausted, 0) << settings.front();
+            size_t hit = 0, exact = 0, nearer = 0;
+            for (size_t i = 0; i < found.bvh.size(); ++i) {
+                exact += found.bvh[i].t < INFINITY ? 1 : 0;
+                hit += found.abuffer[i].t < INFINITY ? 1 : 0;
+                nearer += found.abuffer[i].t < found.bvh[i].t ? 1 : 0;
+            }
+            // A farther primitive may be found in place of the nearest, and nothing else.
+            EXPECT_TRUE(!primitive || nearer == 0) << settings.front() << " " << nearer;
+            EXPECT_GT(exact, 500u);
+            return static_cast<double>(hit) / static_cast<double>(exact);
+        };
+        const double all = share(hall, {"abuffer.march=exhaustive"}),
+                     many = share(hall, {"abuffer.march=fixed"}),
+                     few = share(hall, {"abuffer.march=fixed", "abuffer.steps=3"}),
+                     single = share(hall, {"abuffer.views=single"});
+        EXPECT_GT(all, 0.9) << record;
+        EXPECT_GT(many, 0.8 * all) << record;
+        EXPECT_LT(few, many) << record;
+        EXPECT_LT(single, all) << record;
+        EXPECT_GT(single, 0.1) << record;
+        if (primitive) continue;
+        EXPECT_LT(share(lattice, {"abuffer.layering=single"}), share(lattice, {"abuffer.layering=multi"}));
+    }
+}
+
+// Several rays of an invocation share what a driver lets its loops make: none of them is cut short.
+TEST_F(ABufferRays, ManyRaysAPixelAreNotExhausted) {
+    Graph graph = shippedGraph("abuffer_ao", {"ao.rays=20", "abuffer.count_exhausted=true",
+                                              "abuffer.skipping=false", "store.structure=ll"});
+    RenderOptions options;
+    options.countIterations = true; // fails where an invocation makes too many
+    Renderer made = renderer(graph, loadScene("builtin:lattice?detail=0.3"), options, {48, 27, 1});
+    made.frame();
+    made.frame();
+    EXPECT_GT(made.last().values.at("abuffer").at("rays"), 10'000);
+    EXPECT_EQ(made.last().values.at("abuffer").at("exhausted rays"), 0);
 }
 
 // Occlusion by the A-buffer beside the hierarchy's. A surface that is seen at a grazing angle changes its
