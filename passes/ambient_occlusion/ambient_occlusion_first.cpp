@@ -221,14 +221,8 @@ void AmbientOcclusionFirst::prepare(Commands& commands) const {
 void AmbientOcclusionFirst::occlude(Commands& commands) const {
     const Desc& depth = commands.desc("view_depth");
     if (commands.uses("mask")) {
-        // Where the map begins and ends, in pixels of the depth from its own corner.
-        const Desc whole = Desc::texture2D(Format::R8, commands.desc("visibility").extent);
-        const float unit = 1.0f / static_cast<float>(depth.view.divisor);
-        const int bandTexels = depth.view.guard / depth.view.divisor;
-        const auto band = static_cast<float>(bandTexels);
-        const float more = guard > depth.view.guard ? static_cast<float>(guard) * unit : band;
-        const glm::vec2 size(whole.extent.width, whole.extent.height);
-        commands.set("reach", glm::vec4(glm::vec2(band - more), size + band + more));
+        const int more = std::max(guard - depth.view.guard, 0);
+        commands.set("reach", static_cast<float>(more) / static_cast<float>(depth.view.divisor));
     }
     commands.dispatchOver(commands.desc("visibility").extent);
 }

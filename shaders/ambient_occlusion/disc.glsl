@@ -30,6 +30,7 @@ struct DiscPoint {
     float cutoffSquared;      // of the kernel's, pixels of the image
     float away;               // distance from the eye, or from its plane of a parallel projection
     vec2 place;               // pixel coordinate in the image
+    vec3 rise;                // of a surface per depth of it, radii: its height changes by xy a pixel, and is z at `place`
 };
 
 // Of the 4 x 4 ordered dither matrix, as turns.
@@ -51,6 +52,7 @@ DiscPoint discPoint(EyeGrid grid, vec2 place, float depth, vec3 normal, ivec2 pi
     point.radius = min(kernel.radius, most);
     point.perRadius = 1.0 / point.radius;
     point.radiusPixels = point.radius * pixelsPerUnit;
+    point.rise = -point.perRadius * (grid.parallel ? vec3(0.0, 0.0, 1.0) : vec3(-point.toEye.xy * grid.unitsPer, point.away / depth));
     point.cutoffSquared = kernel.cutoff * kernel.cutoff / (divisor * divisor);
 
     vec2 turn = discTurns[(pixel.x & 3) + 4 * (pixel.y & 3)];
@@ -70,7 +72,7 @@ struct DiscSample {
     float scale;   // one over the density
     float whole;   // contribution where nothing occludes
     bool counts;   // enough of its chord is before the tangent plane
-    bool inside;   // the image has its place
+    float outside; // how far outside of the image its place lies, pixels; negative inside
     bool self;     // the point's own pixel
 };
 
@@ -86,12 +88,18 @@ DiscSample discSample(EyeGrid grid, DiscPoint point, ivec2 size, vec4 disc) {
     float depth = grid.parallel ? 1.0 : max(-s.position.z, -1e-3 * point.position.z);
     s.place = grid.axis + grid.perUnit * s.position.xy / depth;
     s.pixel = ivec2(clamp(s.place, vec2(0.0), vec2(size) - 0.5));
-    s.inside = all(greaterThanEqual(s.place, vec2(0.0))) && all(lessThan(s.place, vec2(size)));
+    vec2 centre = 0.5 * vec2(size), beyond = abs(s.place - centre) - centre;
+    s.outside = max(beyond.x, beyond.y);
     s.self = s.pixel == ivec2(point.place);
     return s;
 }
 
 float sampleHeight(DiscPoint point, vec3 position) { return dot(position - point.position, point.toEye) * point.perRadius; }
+
+// The same of a depth at a pixel coordinate, in few operations.
+float heightAt(DiscPoint point, vec2 place, float depth) {
+    return depth * (dot(place - point.place, point.rise.xy) + point.rise.z) + point.away * point.perRadius;
+}
 
 float vaoContribution(DiscSample s, float height) {
     // Below the tangent plane the chord is free, inside the sphere what lies before; beyond the sphere's front and the
@@ -111,6 +119,11 @@ float hbaoContribution(DiscPoint point, DiscSample s, vec3 position) {
 // Of something at an eye-space position.
 float contribution(DiscPoint point, DiscSample s, vec3 position) {
     return IS_HBAO ? hbaoContribution(point, s, position) : vaoContribution(s, sampleHeight(point, position));
+}
+
+// Of a depth at a pixel coordinate, whose height is known.
+float contributionAt(EyeGrid grid, DiscPoint point, DiscSample s, vec2 place, float depth, float height) {
+    return IS_HBAO ? hbaoContribution(point, s, eyePosition(grid, place, depth)) : vaoContribution(s, height);
 }
 
 // How high the range ends in which depths behind the first may occlude.

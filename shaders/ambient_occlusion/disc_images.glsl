@@ -19,15 +19,16 @@ DiscPoint pointAt(EyeGrid grid, ivec2 pixel, out float depth) {
 // What the depth shows at a sample: its contribution and height, and whether that may hide what occludes.
 float firstContribution(EyeGrid grid, DiscPoint point, DiscSample s, out float height, out bool hidden) {
     vec2 place = vec2(s.pixel) + 0.5;
-    vec3 first = eyePosition(grid, place, depthOrFar(imageLoad(view_depth, s.pixel).r));
-    float value = contribution(point, s, first);
-    height = sampleHeight(point, first);
+    float first = depthOrFar(imageLoad(view_depth, s.pixel).r);
+    height = heightAt(point, place, first);
+    float value = contributionAt(grid, point, s, place, first, height);
     hidden = mayHide(point, s, height);
 #ifdef DUAL
-    vec3 second = eyePosition(grid, place, depthOrFar(imageLoad(second_depth, s.pixel).r));
+    float second = depthOrFar(imageLoad(second_depth, s.pixel).r);
     if (hidden) {
-        value = min(value, contribution(point, s, second));
-        height = min(height, sampleHeight(point, second));
+        float other = heightAt(point, place, second);
+        value = min(value, contributionAt(grid, point, s, place, second, other));
+        height = min(height, other);
         hidden = mayHide(point, s, height);
     }
 #endif

@@ -52,7 +52,7 @@ void main() {
         float height;
         bool hidden;
         firstContribution(grid, point, s, height, hidden);
-        float top = s.inside ? min(height, reachOf(s)) : reachOf(s);
+        float top = s.outside < 0.0 ? min(height, reachOf(s)) : reachOf(s);
         float stretch = grid.parallel ? 1.0 : length(s.position) / point.away;
         float slack = grid.parallel ? 0.0 : length(kernel.disc[i].xy) * point.radius * texelAngle;
         float from = max((point.away - top * point.radius) * stretch - slack, 0.0);

@@ -46,12 +46,12 @@ float behind(EyeGrid grid, DiscPoint point, DiscSample s, float height, float va
     hitDirection = mat3(depthView.view) * direction;
     hitOrigin = grid.parallel ? vec3(eyePosition(grid, place, 1.0).xy, 0.0) : vec3(0.0);
     float cosine = -dot(hitDirection, point.toEye);
-    float top = s.inside ? min(height, reachOf(s)) : reachOf(s);
+    float top = s.outside < 0.0 ? min(height, reachOf(s)) : reachOf(s);
     Ray ray = surfaceRay(origin, vec3(0.0), direction);
     ray.tMin = max((point.away - top * point.radius) / cosine, tNear);
     ray.tMax = min((point.away - s.back * point.radius) / cosine, tFar);
     // Behind the first surface, which both would meet otherwise.
-    if (s.inside) ray.tMin = max(ray.tMin, imageLoad(view_depth, s.pixel).r * (1.0 + depthSeparation) / -hitDirection.z);
+    if (s.outside < 0.0) ray.tMin = max(ray.tMin, imageLoad(view_depth, s.pixel).r * (1.0 + depthSeparation) / -hitDirection.z);
     hitPoint = point;
     hitSample = s;
     hitLeast = value;
@@ -69,7 +69,8 @@ float behind(EyeGrid grid, DiscPoint point, DiscSample s, float height, float va
     for (int layer = 0; layer < layers_count; ++layer) {
         ITERATION;
         float depth = layers_depth(texel, layer);
-        float told = contribution(point, s, eyePosition(grid, place, depth < noLayer ? depth : depthOrFar(0.0)));
+        depth = depth < noLayer ? depth : depthOrFar(0.0);
+        float told = contributionAt(grid, point, s, place, depth, heightAt(point, place, depth));
         value = min(value, told);
 #ifdef IN_ORDER
         if (depth >= noLayer) break; // nor do the others hold any
@@ -96,7 +97,7 @@ void main() {
         float height;
         bool hidden;
         float first = firstContribution(grid, point, s, height, hidden);
-        change += behind(grid, point, s, height, s.inside ? first : s.whole) - first;
+        change += behind(grid, point, s, height, s.outside < 0.0 ? first : s.whole) - first;
     }
     ITERATIONS_END;
 #ifdef CONTINUES
