@@ -10,9 +10,11 @@ SHARED_BEGIN
 const float depthSeparation = 4.8828125e-4f; // 2^-11
 
 // Within the texel, in [0, 1)^2: of 4 x 4 texels the first 16 points of the Sobol sequence, one in each row and column of
-// the 16 x 16 grid (Brüll, Kern, Grosch 2024, figure 5). `texel` counts from the frame's corner, guard band excluded.
+// the 16 x 16 grid (Brüll, Kern, Grosch 2024, figure 5). Which texel has which the paper leaves open: here each column of
+// texels has a point in every quarter of their width, and each row in every quarter of their height, so that no edge
+// passes a whole row or column at once. `texel` counts from the frame's corner, guard band excluded.
 inline vec2 sobolJitter(ivec2 texel) {
-    uint index = uint((texel.x & 3) + 4 * (texel.y & 3));
+    uint index = uint(((texel.x + texel.y) & 3) + 4 * (texel.y & 3));
     vec2 point = vec2(unitFloat(reverseBits32(index)), unitFloat(reverseBits32(reversedSobol1(index))));
     return point + vec2(0.03125f, 0.03125f);
 }

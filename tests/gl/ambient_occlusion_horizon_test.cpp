@@ -200,6 +200,112 @@ TEST_F(Horizons, LayersComeFromWhoeverGivesThem) {
     EXPECT_GT(difference(rays, none).rms, difference(rays, second).rms);
 }
 
+// Without depths behind the first surface the layers' form is that of a constant thickness of half the way to
+// the sample: with one step a side the same for all pixels of a diagonal of the pattern.
+TEST_F(Horizons, AnEmptyMapLeavesTheThicknessOfTheFirstSurface) {
+    const auto corner = joined(parallelogram({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}),
+                               parallelogram({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}));
+    const auto image = [&](std::vector<std::string> settings) {
+        settings.insert(settings.end(), {"horizons.steps=1", "horizons.radius=0.4"});
+        Graph made = graph(settings);
+        made.outputs.push_back({{"map", "depths"}, {}});
+        Renderer renders = renderer(made, trianglesScene(corner), {}, {96, 64, 1});
+        renders.setFreeCamera(lookingAt({0, 0.4f, 2.2f}, {0, -0.4f, 0}));
+        renders.frame();
+        for (const int layers : {0, 1})
+            for (const float depth : renders.read({"map", "depths"}, layers).values)
+                EXPECT_EQ(depth, 3.0e38f);
+        return renders.read({"horizons", "visibility"});
+    };
+    const Image layers = image(byLayers);
+    double largest = 0;
+    for (int diagonal = 0; diagonal < 4; ++diagonal) {
+        const double thickness = 0.5 * 0.4 * (diagonal + 0.5) / 4;
+        const Image constant =
+            image({"horizons.method=bitmask", fmt::format("horizons.thickness={}", thickness)});
+        int different = 0;
+        for (int y = 0; y < layers.height; ++y)
+            for (int x = 0; x < layers.width; ++x) {
+                const int up = layers.height - 1 - y;
+                const double by = std::abs(double{layers.at(x, y)} - double{constant.at(x, y)});
+                if (((up - x) & 3) == diagonal)
+                    different += by > 1e-3 ? 1 : 0;
+                else
+                    largest = std::max(largest, by);
+            }
+        // Where a sector's edge falls to the other side by rounding.
+        EXPECT_LE(different, 16) << diagonal;
+    }
+    EXPECT_GT(largest, 0.05);
+}
+
+// Two fins stand on a wall with the eye in their planes: they cover no pixel, and rays through the middle
+// pass along them. What is farther off than the radius is open, up to the picture's border.
+TEST_F(Horizons, WithLayersEdgeOnSurfacesAreFiniteAndLeaveNoBorder) {
+    auto fins = parallelogram({-6, -4, -3}, {12, 0, 0}, {0, 8, 0});
+    fins = joined(fins, parallelogram({0, -0.6f, -3}, {0, 0, 1}, {0, 1.2f, 0}));
+    fins = joined(fins, parallelogram({-0.6f, 0, -3}, {1.2f, 0, 0}, {0, 0, 1}));
+    for (const char* divisor : {"map.divisor=1", "map.divisor=4"})
+        for (const char* jitter : {"map.jitter=false", "map.jitter=true"}) {
+            std::vector<std::string> settings = byLayers;
+            settings.insert(settings.end(), {divisor, jitter, "horizons.radius=0.25"});
+            RenderOptions options;
+            options.checkFinite = true;
+            const Extent size{97, 65, 1}; // the middle of a pixel lies on the axis
+            Renderer made = renderer(graph(settings), trianglesScene(fins), options, size);
+            // Half way from the wall to the fins' ends lies the scene's middle.
+            made.setFreeCamera(lookingAt({0, 0, 2.5f}, {0, 0, 0}));
+            made.frame();
+            const Image image = made.read({"horizons", "visibility"});
+            const double perPixel = 2 * std::tan(0.4) / size.height;
+            int open = 0;
+            for (int y = 0; y < image.height; ++y)
+                for (int x = 0; x < image.width; ++x) {
+                    const double right = std::abs(x + 0.5 - size.width / 2.0) * perPixel,
+                                 up = std::abs(y + 0.5 - size.height / 2.0) * perPixel;
+                    const float value = image.at(x, y);
+                    ASSERT_TRUE(value >= 0 && value <= 1);
+                    // From the fins' ends, which reach to 0.6 at a depth of 2, and the wall at 3.
+                    if (std::max(right, up) < 0.3 + 0.13 + 4 * perPixel) continue;
+                    EXPECT_GT(value, 0.98f) << x << " " << y << " " << divisor << " " << jitter;
+                    ++open;
+                }
+            EXPECT_GT(open, 300);
+        }
+}
+
+// A pixel at the border is as in a frame that is wider by whole tiles of the pattern.
+TEST_F(Horizons, WithLayersABorderPixelIsAsInALargerFrame) {
+    const Scene scene = loadScene("builtin:tower?detail=0.2");
+    const int more = 32, border = 8;
+    const Extent small{112, 64, 1}, large{small.width + 2 * more, small.height + 2 * more, 1};
+    const auto image = [&](const Extent& size) {
+        Graph made = shippedGraph("horizon_ao", {"horizons.thickness_from=layers"});
+        made.outputs = {{{"horizons", "visibility"}, {}}};
+        RenderOptions options;
+        options.size = size;
+        Renderer renders(made, shipped(), scene, context().capabilities(), options);
+        CameraState state = cameraAt(scene, cameraIndex(scene, "above"), 0);
+        const auto heights = static_cast<float>(size.height) / static_cast<float>(small.height);
+        state.verticalFov = 2 * std::atan(std::tan(state.verticalFov / 2) * heights);
+        renders.setFreeCamera(state);
+        renders.frame();
+        return renders.read({"horizons", "visibility"});
+    };
+    const Image alone = image(small), around = image(large);
+    int pixels = 0, far = 0, occluded = 0;
+    for (int y = 0; y < alone.height; ++y)
+        for (int x = 0; x < alone.width; ++x) {
+            if (std::min({x, y, alone.width - 1 - x, alone.height - 1 - y}) >= border) continue;
+            ++pixels;
+            occluded += alone.at(x, y) < 0.9f ? 1 : 0;
+            far += std::abs(alone.at(x, y) - around.at(x + more, y + more)) > 0.02f ? 1 : 0;
+        }
+    RecordProperty("far", fmt::format("{} of {}", far, pixels));
+    EXPECT_LE(far, pixels / 100);
+    EXPECT_GT(occluded, pixels / 40);
+}
+
 TEST_F(Horizons, LayersMustBeConnected) {
     std::vector<std::string> settings = byLayers;
     settings.emplace_back("horizons.layers=");

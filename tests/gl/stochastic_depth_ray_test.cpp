@@ -142,6 +142,26 @@ struct RayMap : DepthTest {
     }
 };
 
+// One point in each row and column of the 16 x 16 grid; of each row of texels one in every quarter of their
+// height, of each column one in every quarter of their width.
+TEST(StochasticDepthNumbers, JitterSpreadsAlongRowsAndColumns) {
+    std::set<int> right, up;
+    for (int i = 0; i < 4; ++i) {
+        std::set<int> quarters[2];
+        for (int k = 0; k < 4; ++k) {
+            const glm::vec2 point = shared::sobolJitter({i, k});
+            right.insert(static_cast<int>(point.x * 16));
+            up.insert(static_cast<int>(point.y * 16));
+            quarters[0].insert(static_cast<int>(point.x * 4));
+            quarters[1].insert(static_cast<int>(shared::sobolJitter({k, i}).y * 4));
+        }
+        EXPECT_EQ(quarters[0].size(), 4u) << i;
+        EXPECT_EQ(quarters[1].size(), 4u) << i;
+    }
+    EXPECT_EQ(right.size(), 16u);
+    EXPECT_EQ(up.size(), 16u);
+}
+
 TEST(StochasticDepthNumbers, MasksAreSortedByTheirBits) {
     const std::array<unsigned int, 9> first = {0, 1, 9, 37, 93, 163, 219, 247, 255};
     for (unsigned int bits = 0; bits < first.size(); ++bits)
