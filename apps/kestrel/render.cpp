@@ -23,6 +23,7 @@ namespace {
 struct RenderArguments : GraphArguments {
     int frames = 1, every = 0;
     std::uint32_t seed = 0;
+    std::optional<double> timeStep;
     std::string folder, stats, backend = "egl";
     std::vector<std::string> outputs;
     bool keepAll = false, noSharing = false, checkFinite = false, countIterations = false, still = false;
@@ -150,6 +151,7 @@ int render(const RenderArguments& arguments) {
     options.keepAll = arguments.keepAll;
     options.shareMemory = !arguments.noSharing;
     options.checkFinite = arguments.checkFinite;
+    options.timeStep = arguments.timeStep;
     options.countIterations = arguments.countIterations;
     options.timing = !arguments.stats.empty();
     options.finishFrames = true;
@@ -217,11 +219,20 @@ void addRenderCommand(CLI::App& app, Run& run) {
         ->check(notEmpty());
     command->add_flag("--still", arguments->still,
                       "The scene's time stands still at that of the first frame");
+    command
+        ->add_option(
+            "--time-step", arguments->timeStep,
+            "Seconds of the scene's time from one frame to the next, in place of --fps; 0: it stands "
+            "still")
+        ->check(CLI::Range(0.0, 1e9))
+        ->excludes("--fps");
     command->add_flag("--keep-all", arguments->keepAll, "Leave nothing out");
     command->add_flag("--no-sharing", arguments->noSharing, "Give each resource memory of its own");
-    command->add_flag("--check-finite", arguments->checkFinite,
-                      "Stop (exit 1) at the first value that is not a number, infinite or out of its range, "
-                      "naming pass, port and pixel");
+    command->add_flag(
+        "--check-finite", arguments->checkFinite,
+        "Stop (exit 1) at the first frame in which any output of any pass holds a value that is not "
+        "a number, infinite or out of its range, naming each such pass and port, the first such "
+        "pixel and how many there are; the first that is named is where it began");
     command->add_flag(
         "--count-iterations", arguments->countIterations,
         "Count the iterations of shaders' loops, and stop (exit 1) where one invocation makes more "

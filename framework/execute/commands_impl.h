@@ -1,6 +1,7 @@
 // Commands on OpenGL: what one step does, with everything bound that it declared.
 #pragma once
 #include "execute/commands.h"
+#include "execute/finite.h"
 #include "execute/resources.h"
 #include "execute/schedule.h"
 #include "execute/step_bindings.h"
@@ -31,7 +32,11 @@ struct FrameReport {
     std::map<std::string, Growth> overflows;                     // pass -> output -> elements needed
     std::map<std::string, std::map<std::string, double>> values; // pass -> key -> value
     std::string step;                                            // that is running: "pass 'a', step 'b'"
+    std::vector<BadOutput> bad; // of the last frame, in the order of the passes; with checkFinite on
     std::function<void(const std::string& what, double fraction)> progress;
+    std::function<void(const std::string& step)> begins; // told before each step runs
+    // Told each image (layer) that checkFinite looks at.
+    std::function<void(const PortRef& port, const Image& image)> look;
 };
 
 class StepCommands final : public Commands {

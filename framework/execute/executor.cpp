@@ -90,6 +90,7 @@ bool Executor::run(const FrameScene& frame, Causes events) {
     if (!unfinished_) {
         for (PassState& state : states_) state.done = false;
         samples_.clear();
+        report_.bad.clear();
     }
     report_.overflows.clear();
     uncounted_.clear();
@@ -201,6 +202,7 @@ void Executor::runStep(int index, const FrameScene& frame) {
     gl::Target attachments;
     const std::optional<glm::uvec2> target = bind(index, frame, attachments);
     report_.step = labels_[static_cast<size_t>(index)];
+    if (report_.begins) report_.begins(report_.step);
     const StepCommands::Context context{plan(),        frame,       capabilities_, states_, resources_,
                                         framebuffers_, noVertices_, attachments,   report_};
     StepCommands commands(context, index, programs_.of(index), target);

@@ -8,6 +8,7 @@
 #include "gl/timer.h"
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct StepSample {
 
 struct ExecutorOptions {
     bool timing = false;      // a clock around every step; waits for the GPU at each where the clock needs it
-    bool checkFinite = false; // scans what each pass wrote; an Error of MeasureFailed names the first
+    bool checkFinite = false; // scans what each pass wrote: FrameReport::bad
     // Counts the iterations of shaders' loops from the next plan on; an Error of MeasureFailed names the
     // steps that make more than a driver surely runs (shader/iterations.h).
     bool countIterations = false;

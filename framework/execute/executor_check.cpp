@@ -55,23 +55,26 @@ void Executor::checkOutputs(const PlanPass& pass) {
         if (!holdsFloats(desc)) continue;
         const double minimum = info != nullptr ? info->minimum : -HUGE_VAL;
         const double maximum = info != nullptr ? info->maximum : HUGE_VAL;
-        const auto refuse = [&, &name = port](const BadValue& bad, const std::string& place) {
-            throw Error(ExitStatus::MeasureFailed,
-                        {{{},
-                          fmt::format("pass '{}', port '{}', {}, channel {}: {} is {}", pass.name, name,
-                                      place, bad.channel, bad.value, bad.what)}});
+        BadOutput bad{pass.name, port, -1, resources_.isBuffer(resource), {}};
+        const auto note = [&](const std::optional<BadValue>& first) {
+            if (!first) return;
+            const std::uint64_t before = bad.first.count;
+            if (before == 0) bad.first = *first;
+            bad.first.count = before + first->count;
         };
-        if (resources_.isBuffer(resource)) {
-            if (const auto bad = firstBadOfBuffer(resources_.buffer(resource), desc, minimum, maximum))
-                refuse(*bad, fmt::format("element {}", bad->x));
-            continue;
+        if (bad.buffer) {
+            note(firstBadOfBuffer(resources_.buffer(resource), desc, minimum, maximum));
+        } else {
+            const int layers =
+                desc.kind == ResourceKind::TextureCube ? 6 : static_cast<int>(desc.extent.depth);
+            for (int layer = 0; layer < layers; ++layer) {
+                if (layers > 1 && bad.first.count == 0) bad.layer = layer;
+                const Image image = resources_.texture(resource).downloadImage(layer);
+                note(firstBadValue(image, minimum, maximum));
+                if (report_.look) report_.look({pass.name, port}, image);
+            }
         }
-        const int layers = desc.kind == ResourceKind::TextureCube ? 6 : static_cast<int>(desc.extent.depth);
-        for (int layer = 0; layer < layers; ++layer)
-            if (const auto bad =
-                    firstBadValue(resources_.texture(resource).downloadImage(layer), minimum, maximum))
-                refuse(*bad, fmt::format("pixel ({}, {}){}", bad->x, bad->y,
-                                         layers > 1 ? fmt::format(" of layer {}", layer) : ""));
+        if (bad.first.count > 0) report_.bad.push_back(std::move(bad));
     }
 }
 

@@ -35,8 +35,8 @@ void requireValid(const Graph& graph, const Registry& registry) {
 
 } // namespace
 
-double timeAfter(double time, double duration, double framesPerSecond) {
-    const double next = time + 1 / framesPerSecond;
+double timeAfter(double time, double duration, double step) {
+    const double next = time + step;
     return next <= duration ? next : duration > 0 ? std::fmod(next, duration) : 0;
 }
 
@@ -67,7 +67,9 @@ Renderer::Renderer(Graph graph, const Registry& registry, Scene scene, const Cap
     facts_ = gatherFacts(scene_);
     executor_ = std::make_unique<Executor>(capabilities_, shaderFolders(registry_));
     executor_->registry = &registry_;
-    executor_->options = {options_.timing, options_.checkFinite, options_.countIterations};
+    executor_->options = {.timing = options_.timing,
+                          .checkFinite = options_.checkFinite,
+                          .countIterations = options_.countIterations};
     executor_->report().progress = options_.progress;
     compileGraph(graph_);
     gpu_ = std::make_unique<GpuScene>(scene_);
@@ -209,8 +211,8 @@ void Renderer::takeTime() {
         time_ = *jump_;
         jumped_ = time_ != before;
     } else if (moves() && !paused_ && lastConditions_) {
-        time_ = timeAfter(before, facts_.duration, scene_.frameRate);
-        jumped_ = before + 1 / scene_.frameRate > facts_.duration;
+        time_ = timeAfter(before, facts_.duration, timeStep());
+        jumped_ = before + timeStep() > facts_.duration;
     }
     jump_.reset();
 }
@@ -291,10 +293,16 @@ const FrameRecord& Renderer::frame() {
     const int recompiled = runFrame(frame, events);
     if (options_.timing || options_.finishFrames) gl::finish();
 
-    record_ = {index_,    millisecondsSince(start), events, executor_->samples(), executor_->report().values,
-               recompiled};
+    record_ = {index_,     millisecondsSince(start), events, executor_->samples(), executor_->report().values,
+               recompiled, executor_->report().bad};
     lastConditions_ = now;
     ++index_;
+    if (!record_.bad.empty() && !options_.keepBad) {
+        std::vector<Problem> problems;
+        for (const BadOutput& bad : record_.bad)
+            problems.push_back({{}, fmt::format("frame {}: {}", record_.index, bad.text())});
+        throw Error(ExitStatus::MeasureFailed, std::move(problems));
+    }
     return record_;
 }
 

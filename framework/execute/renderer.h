@@ -20,11 +20,13 @@ struct RenderOptions {
     std::string camera; // empty: the graph's, else Scene::camera
     bool keepAll = false;
     bool shareMemory = true;
-    bool timing = false;           // times every step; waits for the GPU around each where the clock needs it
-    bool finishFrames = false;     // waits for the GPU at the end of each frame, so that its time is true
-    bool checkFinite = false;      // an Error (MeasureFailed) names the first bad value of any output
-    bool countIterations = false;  // an Error (MeasureFailed) names loops that some driver would cut short
-    std::vector<PortRef> previews; // ports to make and keep readable besides the graph's outputs
+    bool timing = false;          // times every step; waits for the GPU around each where the clock needs it
+    bool finishFrames = false;    // waits for the GPU at the end of each frame, so that its time is true
+    bool checkFinite = false;     // an Error (MeasureFailed) names the bad outputs of every pass of a frame
+    bool keepBad = false;         // with checkFinite: FrameRecord::bad holds them, and there is no error
+    bool countIterations = false; // an Error (MeasureFailed) names loops that some driver would cut short
+    std::optional<double> timeStep; // seconds of the scene from frame to frame; absent: 1 / Scene::frameRate
+    std::vector<PortRef> previews;  // ports to make and keep readable besides the graph's outputs
     std::function<void(const std::string& what, double fraction)> progress; // of long work in one step
 };
 
@@ -36,6 +38,7 @@ struct FrameRecord {
     std::vector<StepSample> samples;                             // with timing on
     std::map<std::string, std::map<std::string, double>> values; // what passes report: pass -> key -> value
     int recompiled = 0;                                          // after overflows
+    std::vector<BadOutput> bad;                                  // with keepBad on
 };
 
 class Renderer {
@@ -46,8 +49,8 @@ public:
              RenderOptions options = {});
     ~Renderer();
 
-    // Renders the next frame. An animated scene begins at Scene::startTime, goes on by 1 / Scene::frameRate a
-    // frame and starts again at its end.
+    // Renders the next frame. An animated scene begins at Scene::startTime, goes on by timeStep() a frame and
+    // starts again at its end.
     // Throws InputError naming pass, need and limit if a pass overflows again and again.
     const FrameRecord& frame();
     [[nodiscard]] const FrameRecord& last() const { return record_; }
@@ -71,7 +74,9 @@ public:
     void setTiming(bool timing);
     void setTime(double seconds);                     // jumps there with the next frame
     void setPaused(bool paused) { paused_ = paused; } // the time stands still
-    void restart();                                   // frame index 0, the scene's first time, nothing kept
+    // Seconds of the scene from frame to frame, at least 0; absent: 1 / Scene::frameRate.
+    void setTimeStep(std::optional<double> seconds) { options_.timeStep = seconds; }
+    void restart(); // frame index 0, the scene's first time, nothing kept
     // Compiles anew if a shader file changed since it was read; true if so. With an error in the shader the
     // plan before stays and the InputError is thrown.
     bool reloadIfChanged();
@@ -84,6 +89,7 @@ public:
     [[nodiscard]] const Capabilities& capabilities() const { return capabilities_; }
     [[nodiscard]] Executor& executor() { return *executor_; }
     [[nodiscard]] std::string cameraName() const;
+    [[nodiscard]] double timeStep() const { return options_.timeStep.value_or(1 / scene_.frameRate); }
     [[nodiscard]] std::uint32_t nextFrame() const { return index_; }
     [[nodiscard]] double compileMs() const { return compileMs_; } // of the last compilation, without shaders
 
@@ -122,8 +128,9 @@ private:
     double compileMs_ = 0;
 };
 
-// The time of the frame after one at `time`, in a scene of `duration` seconds that starts again at its end.
-double timeAfter(double time, double duration, double framesPerSecond = 60);
+// The time of the frame `step` seconds after one at `time`, in a scene of `duration` seconds that starts
+// again at its end.
+double timeAfter(double time, double duration, double step = 1.0 / 60);
 
 // The passes of a graph with its properties: pass objects of `before` of the same name and type are used
 // again, with every property set anew.

@@ -201,7 +201,7 @@ private:
         const Scene& scene = renderer.scene();
         double time = scene.startTime;
         for (int i = 1; i < sweep_.frames; ++i)
-            time = timeAfter(time, renderer.facts().duration, scene.frameRate);
+            time = timeAfter(time, renderer.facts().duration, 1 / scene.frameRate);
         return time;
     }
 

@@ -404,7 +404,8 @@ TEST_F(BindTest, TheFirstBadValueIsNamed) {
     // Row 1 of OpenGL is the third from the top.
     EXPECT_THAT(
         messageOfFrame(graph, options),
-        AllOf(HasSubstr("pass 'bad', port 'result', pixel (5, 2), channel 0"), HasSubstr("is not a number")));
+        AllOf(HasSubstr("frame 0: pass 'bad', port 'result', pixel (5, 2), channel 0"),
+              HasSubstr("is not a number; 1 of its values is bad")));
 }
 
 } // namespace

@@ -20,6 +20,10 @@ TEST(FirstBadValue, IsTheFirstFromTheTopRowByRow) {
     EXPECT_EQ(bad->y, 1);
     EXPECT_EQ(bad->channel, 1);
     EXPECT_EQ(bad->what, "not a number");
+    EXPECT_EQ(bad->count, 2u);
+    EXPECT_EQ((BadOutput{"a", "b", 3, false, *bad}.text()),
+              "pass 'a', port 'b', pixel (3, 1) of layer 3, channel 1: nan is not a number; 2 of its values "
+              "are bad");
     image.at(3, 1, 1) = 0;
     EXPECT_EQ(firstBadValue(image, -infinity, infinity)->what, "infinite");
 }
