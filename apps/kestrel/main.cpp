@@ -108,6 +108,7 @@ int main(int argc, char** argv) {
     addCompareCommand(app, run);
     addSceneCommand(app, run);
     addSweepCommand(app, run);
+    addStressCommand(app, run);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& done) {

@@ -1,10 +1,9 @@
-// The texts that a page of results is made of.
+// The texts that a page of a sweep is made of, besides page_html.h.
 #pragma once
 #include <string_view>
 
 namespace kestrel::page {
 
-extern const std::string_view style; // CSS
 // JavaScript that draws everything from the JSON in the page, in two parts of one text.
 extern const std::string_view plotScript;  // what all of it needs; tool tips and plots
 extern const std::string_view tableScript; // the table, the pictures, and what starts it all

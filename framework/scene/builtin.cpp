@@ -3,6 +3,7 @@
 #include "scene/builtin/blended.h"
 #include "scene/builtin/scenes.h"
 #include "scene/builtin/split.h"
+#include "scene/builtin/stress_scenes.h"
 #include "scene/builtin/surround.h"
 #include <algorithm>
 #include <charconv>
@@ -62,6 +63,26 @@ Number parseNumber(const std::string& source, std::string_view key, std::string_
     return value;
 }
 
+// "stress_layers?count=100".
+Scene stressScene(const std::string& source, std::string_view name, std::string_view query) {
+    std::vector<std::string> names;
+    for (const builtin::StressScene& entry : builtin::stressScenes()) {
+        names.push_back("stress_" + std::string(entry.name));
+        if (names.back() != name) continue;
+        int count = entry.count;
+        if (query.starts_with("count=") && entry.most > 0)
+            count = parseNumber(source, "count", query.substr(6), 1, entry.most, "whole number");
+        else if (!query.empty())
+            throw InputError(fmt::format(
+                "{}: {}", source, entry.most > 0 ? "it has one property, count" : "it has no properties"));
+        Scene scene = entry.make(count);
+        scene.name = std::string(prefix) + std::string(name);
+        scene.source = source;
+        return scene;
+    }
+    throw InputError(fmt::format("there is no built-in scene '{}'{}", name, didYouMean(name, names)));
+}
+
 Query parseQuery(const std::string& source, std::string_view text) {
     Query query;
     std::vector<std::string> seen;
@@ -110,6 +131,10 @@ Scene builtinScene(const std::string& source) {
     const std::string_view rest = std::string_view(source).substr(prefix.size());
     const size_t question = rest.find('?');
     const std::string name(rest.substr(0, question));
+    if (name.starts_with("stress_"))
+        return stressScene(source, name,
+                           question == std::string_view::npos ? std::string_view()
+                                                              : rest.substr(question + 1));
     const Query query =
         question == std::string_view::npos ? Query{} : parseQuery(source, rest.substr(question + 1));
     for (const Entry& entry : entries) {

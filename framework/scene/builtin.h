@@ -23,7 +23,8 @@ std::vector<std::string> builtinNames();
 // 64, default 1, cuts each triangle into N * N coplanar ones: the same surface in more triangles (scenes with
 // a skin cannot be split). Extent, 1 to 1000, default 1, makes the scene the middle of one that is so many
 // times larger and otherwise empty, but for four small posts far away. Blended, 0.01 to 1, makes every
-// material blended, of that alpha, and seen from both sides. finishScene() has not been called on the result.
+// material blended, of that alpha, and seen from both sides. "builtin:stress_NAME?count=N" are the scenes of
+// stress cases (builtin/stress_scenes.h), which no list has. finishScene() has not been called on the result.
 // Throws InputError with the near name for an unknown scene or key, and for a value out of range.
 Scene builtinScene(const std::string& source);
 

@@ -51,7 +51,7 @@ PassType AmbientOcclusionFirst::type() {
         .choice("kernel", &AmbientOcclusionFirst::kernel, {"vao", "hbao"},
                 "Volumetric, or horizon-based (with 1.5 times the radius it looks alike)")
         .choice("samples", &AmbientOcclusionFirst::samples, {"8", "16", "32"}, "Samples a pixel")
-        .number("radius", &AmbientOcclusionFirst::radius, 1e-6, 1e9, "scene units",
+        .number("radius", &AmbientOcclusionFirst::radius, 1e-9, 1e9, "scene units",
                 "Of the sphere in which occluders count")
         .number("exponent", &AmbientOcclusionFirst::exponent, 0.1, 16, "", "Power of the result")
         .number("thickness", &AmbientOcclusionFirst::thickness, 0, 1, "radii",

@@ -22,7 +22,7 @@ PassType HbaoInterleaved::type() {
                   "The depth of every fourth pixel of every fourth row, 16 times")
         .number("directions", &HbaoInterleaved::directions, 1, 32, "", "Around a pixel")
         .number("steps", &HbaoInterleaved::steps, 1, 32, "samples", "Along each direction")
-        .number("radius", &HbaoInterleaved::radius, 1e-6, 1e9, "scene units", "How far occluders count")
+        .number("radius", &HbaoInterleaved::radius, 1e-9, 1e9, "scene units", "How far occluders count")
         .number("bias", &HbaoInterleaved::bias, 0, 0.9, "",
                 "Sine of the elevation over the surface up to which nothing occludes")
         .number("exponent", &HbaoInterleaved::exponent, 0.1, 16, "", "Power of the result")

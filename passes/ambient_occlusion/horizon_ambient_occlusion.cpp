@@ -23,7 +23,7 @@ PassType HorizonAmbientOcclusion::type() {
                 "The highest horizon of each side, or sectors that light passes between")
         .number("slices", &HorizonAmbientOcclusion::slices, 1, 32, "", "Planes through the line of sight")
         .number("steps", &HorizonAmbientOcclusion::steps, 1, 64, "samples", "To each side of a slice")
-        .number("radius", &HorizonAmbientOcclusion::radius, 1e-6, 1e9, "scene units",
+        .number("radius", &HorizonAmbientOcclusion::radius, 1e-9, 1e9, "scene units",
                 "How far occluders count")
         .number("maximum_radius", &HorizonAmbientOcclusion::maximumRadius, 1, 4096, "pixels",
                 "The radius is made smaller where it would look larger")

@@ -11,7 +11,8 @@ PassType RayAmbientOcclusion::type() {
         .input("tracer", PortKind::Tracer, "Who answers the visibility queries")
         .output("visibility", PortKind::Texture,
                 "Share of the cosine-weighted hemisphere that is open; 1 where nothing is")
-        .carries({.channels = 1});
+        .carries({.channels = 1})
+        .range(0, 1);
     return addRays(table, "visibility", "How far occluders count; 0: any distance");
 }
 

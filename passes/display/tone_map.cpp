@@ -28,6 +28,7 @@ PassType ToneMap::type() {
     return Describe<ToneMap>("ToneMap", "Maps light to what a display shows")
         .input("colour", PortKind::Texture, "Linear light; one channel is grey")
         .displayOutput("image", "sRGB code values in [0, 1]")
+        .range(0, 1)
         .internal("sums", PortKind::Buffer, "Logarithms of luminance, added up")
         .internal("metered", PortKind::Buffer, "The exposure, from frame to frame")
         .choice("operator", &ToneMap::curve, {"linear", "reinhard", "aces"},

@@ -2,6 +2,7 @@
 #include "dielectric_layer.h"
 #include "execute/commands.h"
 #include <fmt/format.h>
+#include <limits>
 
 namespace kestrel {
 namespace {
@@ -51,6 +52,8 @@ PassType Composite::type() {
         .sameExtentAs("albedo")
         .internal("layer", PortKind::Buffer, "What the layer lets through, by cosine and roughness");
     table.output("result", PortKind::Texture, "Outgoing radiance; a is 1 where something is")
+        .carries({.channels = 4})
+        .range(0, std::numeric_limits<double>::infinity())
         .vector("ambient", &Composite::ambient, 0, 1e9, "radiance",
                 "Light from all sides besides the inputs: albedo times this, darkened by visibility");
     return table;

@@ -12,6 +12,8 @@ PassType ReferenceAmbientOcclusion::type() {
     return addPlaces(table)
         .output("visibility", PortKind::Texture,
                 "Share of the cosine-weighted hemisphere that is open; 1 where nothing is")
+        .carries({.channels = 1})
+        .range(0, 1)
         .number("samples", &ReferenceAmbientOcclusion::samples, 2, 65536, "rays",
                 "Rays a pixel, rounded up to an even number")
         .number("distance", &ReferenceAmbientOcclusion::distance, 0, 1e9, "scene units",

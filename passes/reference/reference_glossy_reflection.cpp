@@ -2,6 +2,7 @@
 #include "draw/face_input.h"
 #include "execute/commands.h"
 #include "gather_pass.h"
+#include <limits>
 
 namespace kestrel {
 
@@ -17,6 +18,8 @@ PassType ReferenceGlossyReflection::type() {
         .sameExtentAs("position")
         .output("result", PortKind::Texture,
                 "Radiance that leaves towards the eye by the specular lobe; 0 where nothing is")
+        .carries(content::colour)
+        .range(0, std::numeric_limits<double>::infinity())
         .number("samples", &ReferenceGlossyReflection::samples, 2, 65536, "rays",
                 "Rays a pixel, rounded up to an even number")
         .number("distance", &ReferenceGlossyReflection::distance, 0, 1e9, "scene units",

@@ -2,6 +2,7 @@
 #include "draw/face_input.h"
 #include "execute/commands.h"
 #include "gather_pass.h"
+#include <limits>
 
 namespace kestrel {
 
@@ -11,6 +12,8 @@ PassType ReferenceIndirectDiffuse::type() {
     return addPlaces(table)
         .output("result", PortKind::Texture,
                 "Cosine-weighted mean of the radiance that arrives (irradiance over pi); 0 where nothing is")
+        .carries(content::colour)
+        .range(0, std::numeric_limits<double>::infinity())
         .output("weight", PortKind::Texture, "1: all frames count alike")
         .number("samples", &ReferenceIndirectDiffuse::samples, 2, 65536, "rays",
                 "Rays a pixel, rounded up to an even number")

@@ -2,6 +2,7 @@
 #include "draw/face_input.h"
 #include "execute/commands.h"
 #include "gather_pass.h"
+#include <limits>
 
 namespace kestrel {
 
@@ -11,6 +12,8 @@ PassType ReferenceSoftShadow::type() {
         "Light straight from area lights and emissive meshes by Embree on the CPU: the truth");
     return addPlaces(table)
         .output("result", PortKind::Texture, "Irradiance over pi that arrives; 0 where nothing is")
+        .carries(content::colour)
+        .range(0, std::numeric_limits<double>::infinity())
         .output("visibility", PortKind::Texture,
                 "How bright the result is over what it would be without shadows; 1 where no light reaches")
         .range(0, 1)

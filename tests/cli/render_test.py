@@ -2,7 +2,7 @@
 import json
 from pathlib import Path
 
-from kestrel_cli import RAY_AO, SMALL, SOURCE, done, files_in, folder, kestrel, need_part, refused, run_tests, shell
+from kestrel_cli import KESTREL, RAY_AO, SMALL, SOURCE, done, files_in, folder, kestrel, need_part, refused, run_tests, shell
 
 
 def test_writes_the_outputs_under_their_names():
@@ -67,6 +67,41 @@ def test_sharing_memory_changes_no_image():
 def test_check_finite_finds_nothing_in_a_shipped_graph():
     with folder() as out:
         done("render", RAY_AO, *SMALL, "--check-finite", "--frames", 2, "--out", out)
+
+
+def test_the_time_step_is_chosen():
+    """A step of two frames is two frames; one of 0 stands still."""
+    run = ["render", RAY_AO, "--scene", "builtin:morph?detail=0.05", "--size", "64x36"]
+    with folder() as out:
+        for name, frames, options in [("second", 3, []), ("double", 2, ["--time-step", str(2 / 60)]), ("fps", 2, ["--fps", 30]),
+                                      ("still", 3, ["--time-step", 0]), ("first", 1, [])]:
+            done(*run, "--frames", frames, *options, "--output", f"gbuffer.position={out}/{name}.exr")
+        second, double, fps, still, first = [(Path(out) / f"{name}.exr").read_bytes()
+                                             for name in ["second", "double", "fps", "still", "first"]]
+        assert double == fps == second and still == first and first != second
+    assert "excludes" in refused(*run, "--time-step", 1, "--fps", 30)[0].lower()
+    assert "--time-step" in refused(*run, "--time-step", -1)[0]
+
+
+def test_check_finite_names_every_bad_output():
+    """A pass that divides by an infinite far plane: each output, its first pixel, and how many."""
+    planted = str(Path(KESTREL).parent.parent / "test_plugins" / "planted")
+    with folder() as here:
+        graph = Path(here) / "far.json"
+        graph.write_text(json.dumps({
+            "kestrel": 1, "scene": {"source": "builtin:blob?detail=0.02"},
+            "passes": {"gbuffer": {"type": "GBuffer"}, "wrong": {"type": "DividesByFar"}, "mean": {"type": "Accumulate"}},
+            "edges": [["gbuffer.view_depth", "wrong.view_depth"], ["wrong.result", "mean.signal"]],
+            "outputs": ["mean.result"]}))
+        run = ["render", graph, "--size", "32x18", "--check-finite", "--out", here]
+        env = {"KESTREL_PLUGINS": planted}
+        assert kestrel(*run, env=env).status == 0, "the scene's own far plane is finite"
+        lines = refused(*run, "--camera", "eye=0,2,5 target=0,0.5,0", status=1, env=env)
+        assert [line.split("pass '")[1].split("', pixel")[0] for line in lines] == ["wrong', port 'result", "mean', port 'result"]
+        assert "pixel (0, 0), channel 0: inf is infinite" in lines[0] and "is not a number" in lines[1], lines
+        for line in lines:
+            assert line.startswith("kestrel: frame 0: "), line
+            assert line.endswith(f"{32 * 18} of its values are bad"), line
 
 
 def test_osmesa_gives_the_same_picture():

@@ -1,4 +1,4 @@
-#include "measure/sweep_page.h"
+#include "measure/page_html.h"
 
 namespace kestrel::page {
 

@@ -1,0 +1,147 @@
+"""kestrel stress: cases in processes of their own, what they find, and that nothing finished is lost."""
+import json
+import os
+import random
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from kestrel_cli import KESTREL, RAY_AO, SOURCE, done, files_in, folder, kestrel, refused, run_tests
+
+BLOB = ["--scene", "builtin:blob?detail=0.02", "--size", "32x18"]
+PLANTED = {"KESTREL_PLUGINS": str(Path(KESTREL).parent.parent / "test_plugins" / "planted")}
+
+
+def planted(here, kind):
+    """A graph of the one wrong pass over the depth of the scene."""
+    graph = Path(here) / f"{kind.lower()}.json"
+    graph.write_text(json.dumps({
+        "kestrel": 1, "name": kind, "scene": {"source": "builtin:blob?detail=0.02"},
+        "passes": {"gbuffer": {"type": "GBuffer"}, "wrong": {"type": kind}},
+        "edges": [["gbuffer.view_depth", "wrong.view_depth"]], "outputs": ["wrong.result"]}))
+    return graph
+
+
+def stressed(here, graph, *options):
+    """The results by case."""
+    result = kestrel("stress", graph, "--size", "32x18", "--json", f"{here}/r.json", *options, env=PLANTED)
+    assert result.status in (0, 1), result.err
+    data = json.loads(Path(here, "r.json").read_text())
+    assert (result.status == 1) == any(case["outcome"] not in ("held", "lacking") for case in data["cases"])
+    return {case["name"]: case for case in data["cases"]}, result
+
+
+def missed(case):
+    return [check for check in case["checks"] if not check["held"]]
+
+
+def test_a_division_by_the_far_plane_is_found():
+    with folder() as here:
+        cases, result = stressed(here, planted(here, "DividesByFar"), "--only", "depth")
+        wrong = missed(cases["depth/infinite"])
+        assert wrong[0]["port"] == "wrong.result" and wrong[0]["expects"] == "finite", wrong
+        assert "pass 'wrong', port 'result', pixel (0, 0)" in wrong[0]["what"] and wrong[0]["missed"] == 32 * 18
+        assert "depth/infinite: missed: pass 'wrong'" in result.out
+        # The command that is told shows it.
+        command = cases["depth/infinite"]["command"]
+        assert command.startswith("kestrel stress ") and "--only depth/infinite" in command
+        again = subprocess.run(command.replace("kestrel", f"'{KESTREL}'", 1), shell=True, capture_output=True, text=True,
+                               timeout=60, cwd=here, env={**os.environ, **PLANTED})
+        assert again.returncode == 1 and "depth/infinite" in again.stdout, again.stderr
+        page = Path(here, "page", "index.html").read_text()
+        assert "wrong.result" in page and 'class="missed"' in page and "http" not in re.sub(r"<!--.*?-->", "", page)
+
+
+def test_a_fixed_epsilon_is_found():
+    with folder() as here:
+        cases, _ = stressed(here, planted(here, "FixedEpsilon"), "--only", "scale", "--page", f"{here}/page")
+        for name in ["scale/1e-06", "scale/1e+06"]:
+            wrong = missed(cases[name])
+            assert wrong and wrong[0]["port"] == "wrong.result" and wrong[0]["expects"] == "same", cases[name]
+            assert wrong[0]["missed"] > 1 and wrong[0]["picture"] in files_in(f"{here}/page")
+
+
+def test_a_hang_costs_one_case():
+    with folder() as here:
+        cases, result = stressed(here, planted(here, "Hangs"), "--only", "frame", "--timeout", 4)
+        hung = [name for name, case in cases.items() if case["outcome"] == "hung"]
+        assert hung == ["frame/1x1", "frame/1x64"], hung
+        assert cases["frame/1x1"]["where"] == "pass 'wrong', step 'make'" and "4 s" in cases["frame/1x1"]["why"]
+        assert "in pass 'wrong', step 'make'" in result.out
+        assert cases["frame/64x1"]["outcome"] == "held"
+
+
+def test_a_crash_costs_one_case():
+    with folder() as here:
+        cases, _ = stressed(here, planted(here, "Crashes"), "--only", "geometry")
+        crashed = [name for name, case in cases.items() if case["outcome"] == "crashed"]
+        assert crashed == ["geometry/empty"], crashed
+        assert "signal 11" in cases["geometry/empty"]["why"]
+        assert cases["geometry/empty"]["where"] == "pass 'wrong', step 'make'"
+        assert cases["geometry/one"]["outcome"] == "held"
+
+
+def test_dropped_fragments_are_found():
+    with folder() as here:
+        cases, _ = stressed(here, planted(here, "DropsFragments"), "--only", "layers")
+        assert not missed(cases["layers/1"])
+        wrong = missed(cases["layers/100"])
+        assert wrong and wrong[0]["port"] == "wrong.result" and wrong[0]["expects"] == "order", cases["layers/100"]
+
+
+def test_lists_its_cases():
+    out = done("stress", "--list").out
+    names = [line.split()[0] for line in out.splitlines()[:-1]]
+    assert len(names) >= 60 and len(set(names)) == len(names)
+    kinds = {name.split("/")[0] for name in names}
+    assert kinds == {"numbers", "scale", "place", "turn", "depth", "frame", "geometry", "layers", "light", "rays", "time"}
+    assert done("stress", "--list", "--only", "scale").out.count("scale/") == 6
+
+
+def test_bad_input_is_refused():
+    assert "did you mean 'numbers/plain'" in refused("stress", RAY_AO, "--only", "numbers/plian")[0]
+    assert "did you mean 'scale'" in refused("stress", RAY_AO, "--only", "scael")[0]
+    assert "GRAPH is missing" in refused("stress")[0]
+    assert "gbufer" in refused("stress", RAY_AO, "--set", "gbufer.jitter=true")[0]
+    assert "give a file" in refused("stress", "-")[0]
+    assert "--resume needs --json" in refused("stress", RAY_AO, *BLOB, "--resume")[0]
+    with folder() as here:
+        done("stress", RAY_AO, *BLOB, "--only", "numbers/plain", "--json", f"{here}/r.json")
+        line = refused("stress", RAY_AO, *BLOB, "--only", "numbers/plain", "--json", f"{here}/r.json", "--resume",
+                       "--set", "ao.rays=2")[0]
+        assert "results of another run" in line, line
+
+
+def test_without_a_device_it_says_so():
+    lines = refused("stress", RAY_AO, *BLOB, "--only", "numbers/plain", status=3,
+                    env={"__EGL_VENDOR_LIBRARY_FILENAMES": "/nowhere.json"})
+    assert len(lines) == 1, lines
+
+
+def test_what_is_killed_loses_nothing_that_was_finished():
+    """kill -9 at random moments: what the file holds is whole, and going on makes the rest."""
+    chance = random.Random(12)
+    with folder() as here:
+        file = Path(here) / "r.json"
+        command = [KESTREL, "stress", RAY_AO, *BLOB, "--only", "scale", "--json", str(file), "--resume"]
+        finished = {}
+        for _ in range(20):
+            run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(chance.uniform(0.1, 2.5))
+            run.send_signal(signal.SIGKILL)
+            run.wait()
+            held = {case["name"]: case for case in json.loads(file.read_text())["cases"]} if file.exists() else {}
+            for name, case in finished.items():
+                assert held[name] == case, name
+            finished = held
+            if len(finished) == 6:
+                file.unlink()  # from the start again
+                finished = {}
+        done(*command[1:])
+        assert len(json.loads(file.read_text())["cases"]) == 6
+
+
+if __name__ == "__main__":
+    run_tests(globals())
