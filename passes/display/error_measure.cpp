@@ -44,8 +44,7 @@ Declaration ErrorMeasure::declare(const World&, const Inputs& inputs, const Dema
     const Desc& test = inputs["test"].desc;
     declaration.outputs.push_back(
         {.port = "heat_map", .desc = Desc::texture2D(Format::RGBA8, test.extent, test.view)});
-    declaration.outputs.back().clear = glm::vec4(0);
-    declaration.outputs.back().keeps = true;
+    declaration.outputs.back().keeps = true; // between measurements the last one is seen
     Step step{.name = "measure",
               .uses = {{.port = "reference", .access = Access::Host},
                        {.port = "test", .access = Access::Host},
@@ -58,7 +57,10 @@ Declaration ErrorMeasure::declare(const World&, const Inputs& inputs, const Dema
 }
 
 void ErrorMeasure::execute(const Step& step, Commands& commands) {
-    if (any(commands.causes() & ~Causes::Frame)) runs_ = 0;
+    if (any(commands.causes() & ~Causes::Frame)) {
+        runs_ = 0;
+        commands.clear("heat_map", glm::vec4(0)); // what was measured is no more
+    }
     if (++runs_ % static_cast<std::uint32_t>(interval) != 0) return;
     Image reference = commands.downloadImage("reference");
     Image test = commands.downloadImage("test");
