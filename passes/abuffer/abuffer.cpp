@@ -45,7 +45,6 @@ PassType ABuffer::type() {
             "Through every pixel on the way, through `steps` of them in each view, or over blocks of pixels "
             "that the ray does not meet (with `skipping`; changes no hit)")
         .number("steps", &ABuffer::steps, 1, 4096, "pixels", "Of each view that a ray looks at, with `fixed`")
-        .choice("views", &ABuffer::views, {"multi", "single"}, "All views of the store, or the frame's alone")
         .choice("layering", &ABuffer::layering, {"multi", "single"},
                 "All fragments, or the nearest of each pixel alone; of primitives all")
         .flag("skipping", &ABuffer::skipping,
@@ -59,7 +58,7 @@ PassType ABuffer::type() {
 
 Declaration ABuffer::declare(const World& world, const Inputs& inputs, const Demand& demand) const {
     Declaration declaration;
-    FragmentLists lists = inputs["nodes"].desc.lists;
+    const FragmentLists& lists = inputs["nodes"].desc.lists;
     const bool primitive = record == ABufferRecord::Primitive;
     const Bits given = provides::Surface | (primitive ? 0 : provides::Approximate);
     for (const char* port : {"tracer", "hits"})
@@ -71,8 +70,6 @@ Declaration ABuffer::declare(const World& world, const Inputs& inputs, const Dem
     declaration.depends = Causes::Properties;
     declareFragmentLayers(world, inputs, demand, declaration);
     if (!demand.reads("tracer") && !demand.reads("hits")) return declaration;
-    const bool single = views == ABufferExtent::Single;
-    if (single) lists.side = 0;
     const char* empty = inputs["nodes"].constant || world.facts.triangles == 0 ? "there are no fragments"
                         : abufferPixels(lists, world.size) == 0 ? "there is no view to march in"
                                                                 : nullptr;
@@ -130,7 +127,7 @@ Module ABuffer::moduleOf(const char* port, const World& world, const FragmentLis
         if (world.facts.hasMasked) module.defines.emplace("MATERIAL_MASKED", "1");
         return module;
     }
-    if (layering == ABufferExtent::Single) module.defines.emplace("SINGLE_LAYER", "1");
+    if (layering == ABufferLayering::Single) module.defines.emplace("SINGLE_LAYER", "1");
     module.defines.emplace("THICKNESS", floatText(thickness));
     module.defines.emplace("OFFSET", floatText(offset));
     return module;

@@ -9,7 +9,7 @@ namespace kestrel {
 
 enum class ABufferRecord : std::uint8_t { Fragment, Primitive };
 enum class ABufferMarching : std::uint8_t { Exhaustive, Fixed, Hierarchical };
-enum class ABufferExtent : std::uint8_t { Multi, Single };
+enum class ABufferLayering : std::uint8_t { Multi, Single };
 
 class ABuffer final : public Pass {
 public:
@@ -19,7 +19,7 @@ public:
 
     ABufferRecord record = ABufferRecord::Fragment;
     ABufferMarching march = ABufferMarching::Exhaustive;
-    ABufferExtent views = ABufferExtent::Multi, layering = ABufferExtent::Multi;
+    ABufferLayering layering = ABufferLayering::Multi;
     int steps = 100;
     bool skipping = true;
     double thickness = 1, offset = 1.5;

@@ -113,7 +113,7 @@ TEST_F(ABufferRays, FewerStepsViewsAndLayersFindLess) {
         const double all = share(hall, {"abuffer.march=exhaustive"}),
                      many = share(hall, {"abuffer.march=fixed"}),
                      few = share(hall, {"abuffer.march=fixed", "abuffer.steps=3"}),
-                     single = share(hall, {"abuffer.views=single"});
+                     single = share(hall, {"bounds.cube=false"});
         EXPECT_GT(all, 0.9) << record;
         EXPECT_GT(many, 0.8 * all) << record;
         EXPECT_LT(few, many) << record;
