@@ -140,7 +140,7 @@ World worldOf(const SceneFacts& facts) {
 
 Plan planOf(const Graph& graph, const SceneFacts& facts, bool keepAll) {
     return compile(graph, shipped(), makePasses(graph, shipped()), worldOf(facts),
-                   {.keepAll = keepAll, .shareMemory = true, .previews = {}});
+                   {.keepAll = keepAll, .shareMemory = false, .previews = {}});
 }
 
 TEST(ShippedShaders, CompileUnderEveryCombinationOfDefines) {
