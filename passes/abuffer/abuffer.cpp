@@ -74,7 +74,7 @@ Declaration ABuffer::declare(const World& world, const Inputs& inputs, const Dem
                         : abufferPixels(lists, world.size) == 0 ? "there is no view to march in"
                                                                 : nullptr;
     if (empty != nullptr) {
-        declareEmpty(declaration, lists, world, demand, empty);
+        declareEmpty(declaration, demand, empty);
         return declaration;
     }
     std::vector<Module> modules;
@@ -133,16 +133,13 @@ Module ABuffer::moduleOf(const char* port, const World& world, const FragmentLis
     return module;
 }
 
-void ABuffer::declareEmpty(Declaration& declaration, const FragmentLists& lists, const World& world,
-                           const Demand& demand, const char* why) const {
+void ABuffer::declareEmpty(Declaration& declaration, const Demand& demand, const char* why) {
     declaration.leftOut.push_back({"marching", why});
     for (const char* port : {"tracer", "hits"}) {
         if (!demand.reads(port)) continue;
-        Module module{
-            .port = port, .shader = "abuffer/abuffer.glsl", .defines = abufferDefines(lists, world.size)};
-        module.defines.emplace(std::string(port) == "hits" ? "PROVIDES_HITS" : "PROVIDES_TRACER", "1");
-        module.defines.emplace("EMPTY", "1");
-        declaration.modules.push_back(std::move(module));
+        const char* provides = std::string(port) == "hits" ? "PROVIDES_HITS" : "PROVIDES_TRACER";
+        declaration.modules.push_back(
+            {.port = port, .shader = "abuffer/empty.glsl", .defines = {{provides, "1"}}});
     }
 }
 

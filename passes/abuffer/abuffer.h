@@ -29,8 +29,7 @@ private:
     // What both modules have in common, by what is asked of them.
     [[nodiscard]] Module moduleOf(const char* port, const World& world, const FragmentLists& lists) const;
     [[nodiscard]] bool hierarchical() const { return march == ABufferMarching::Hierarchical && skipping; }
-    void declareEmpty(Declaration& declaration, const FragmentLists& lists, const World& world,
-                      const Demand& demand, const char* why) const;
+    static void declareEmpty(Declaration& declaration, const Demand& demand, const char* why);
 };
 
 } // namespace kestrel

@@ -1,41 +1,27 @@
-// Module: `tracer` (PROVIDES_TRACER) or `hits` (PROVIDES_HITS) through the fragments of an A-buffer: a ray goes from pixel to pixel and from view to view
-// (abuffer/march.glsl) and meets the fragments whose depth lies in the interval of depths that it has in the pixel (Vardis,
-// Vasilakis, Papaioannou 2016, section 3.4). The interval is half open, and widened on both sides by half of THICKNESS pixel
-// footprints: a surface is kept at the depth of its pixel's centre, and a ray that crosses it elsewhere in the pixel would pass
-// before it in one pixel and behind it in the next (of all hits, then, a surface that lies askew may be met in both). Skipping
-// tests the widened interval, so that it changes no hit. With SINGLE_LAYER only the nearest fragment of a pixel is there.
+// Module: `tracer` (PROVIDES_TRACER) or `hits` (PROVIDES_HITS) through the fragments of an A-buffer: a ray goes from
+// pixel to pixel and from view to view (abuffer/march.glsl) and meets the fragments whose depth lies in the interval of
+// depths that it has in the pixel (Vardis, Vasilakis, Papaioannou 2016, section 3.4). The interval is half open, and
+// widened on both sides by half of THICKNESS pixel footprints: a surface is kept at the depth of its pixel's centre,
+// and a ray that crosses it elsewhere in the pixel would pass before it in one pixel and behind it in the next (of all
+// hits, then, a surface that lies askew may be met in both). Skipping tests the widened interval, so that it changes no
+// hit. With SINGLE_LAYER only the nearest fragment of a pixel is there.
 //
-// Once an invocation has spent BUDGET iterations, whatever rays it traced, the ray is exhausted: it ends there as if it had hit
-// something, and is counted with COUNT_EXHAUSTED.
+// Once an invocation has spent BUDGET iterations, whatever rays it traced, the ray is exhausted: it ends there as if it
+// had hit something, and is counted with COUNT_EXHAUSTED.
 #include "lib/tracer.glsl"
 #include "lib/scene.glsl"
 #include "lib/iterations.glsl"
 #include "abuffer/lists.glsl"
 #include "abuffer/march.glsl"
+#ifdef REQUESTS_SURFACE
+#include "abuffer/nearest.glsl"
+#endif
 
 #ifdef COUNT_EXHAUSTED
 layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
 #endif
 
 void M(aim)(inout Ray ray) {}
-
-#ifdef EMPTY
-#ifdef PROVIDES_HITS
-void M(all)(Ray ray) {}
-#endif
-#ifdef PROVIDES_TRACER
-bool M(anyHit)(Ray ray) { return false; }
-#endif
-#if defined(REQUESTS_CLOSEST) || defined(REQUESTS_SURFACE)
-bool M(closestHit)(Ray ray, out Hit hit) {
-    hit = noHit;
-    return false;
-}
-#endif
-#ifdef REQUESTS_SURFACE
-Surface M(surface)(Ray ray, Hit hit) { return facingSurface(ray, hit); }
-#endif
-#else
 
 layout(r32ui) uniform readonly uimageBuffer M(pixels);
 layout(r32ui) uniform readonly uimageBuffer M(nodes);
@@ -74,30 +60,31 @@ uint M(nearestOf)(int pixel) {
 }
 #endif
 
-#ifdef SKIPPING
-// Between which depths a pixel's fragments lie, as far as its words say: of LL all but how far they reach.
+// Of a plain list the walk's first node says as much as bounds could, and so nothing is looked at before it.
+#if defined(SKIPPING) && (LEVELS > 1 || !defined(LL))
+#define LOOKS_AHEAD
+#endif
+
+#if defined(LOOKS_AHEAD) && LEVELS == 1
+// Between which depths a pixel's fragments lie, as its words say.
 vec2 M(boundsOf)(int pixel) {
     int words = pixel * PIXEL_WORDS;
     uint a = imageLoad(M(pixels), words).r;
+    uint b = imageLoad(M(pixels), words + 1).r;
 #if defined(BUCKETED)
-    return uintBitsToFloat(uvec2(a, imageLoad(M(pixels), words + 1).r));
+    return uintBitsToFloat(uvec2(a, b));
+#elif defined(SB)
+    return b > 0u ? vec2(M(depthOf)(a), M(depthOf)(a + b - 1u)) : vec2(3.0e38, -3.0e38);
 #else
-    const vec2 none = vec2(3.0e38, -3.0e38);
-#if defined(SB)
-    uint count = imageLoad(M(pixels), words + 1).r;
-    return count > 0u ? vec2(M(depthOf)(a), M(depthOf)(a + count - 1u)) : none;
-#elif defined(TWO_WAYS)
-    return a > 0u ? vec2(M(depthOf)(a), M(depthOf)(imageLoad(M(pixels), words + 1).r)) : none;
-#else
-    return a > 0u ? vec2(M(depthOf)(a), 3.0e38) : none;
-#endif
+    return a > 0u ? vec2(M(depthOf)(a), M(depthOf)(b)) : vec2(3.0e38, -3.0e38);
 #endif
 }
 #endif
 
 #ifdef PROVIDES_TRACER
 
-// The fragment of a list of linked nodes that a ray meets first, whose depths in the pixel are [low, high): 0 if there is none.
+// The fragment of a list of linked nodes that a ray meets first, whose depths in the pixel are [low, high): 0 if there
+// is none.
 uint M(inList)(uint head, uint tail, float low, float high, bool away) {
     uint found = 0u;
 #ifdef TWO_WAYS
@@ -234,19 +221,20 @@ ABufferMarch M(begin)(Ray ray) {
     return abufferMarch(M(view), ABUFFER_SHAPE, view, fromEye, ray.direction, ray.tMin, ray.tMax);
 }
 
-// To the next pixel that has fragments where the ray is; false if the view is left before. A loop of its own, and nothing but the
-// bounds in it: on a driver that runs both sides of every branch a loop is all that can be left early.
+// To the next pixel that has fragments where the ray is; false if the view is left before. A loop of its own, and
+// nothing but the bounds in it: on a driver that runs both sides of every branch a loop is all that can be left early.
 bool M(goesOn)(inout ABufferMarch march) {
     while (march.inside) {
         ITERATION;
         ++M(spent);
         abufferAhead(march, M(steps));
-#ifdef SKIPPING
+#ifdef LOOKS_AHEAD
         float pad;
         vec2 depths = M(depthsAhead)(march, pad);
 #if LEVELS > 1
         int block = 2 * abufferBlock(march, ABUFFER_SHAPE, MAIN_SIZE);
-        vec2 bounds = uintBitsToFloat(uvec2(imageLoad(M(block_bounds), block).r, imageLoad(M(block_bounds), block + 1).r));
+        vec2 bounds = uintBitsToFloat(
+            uvec2(imageLoad(M(block_bounds), block).r, imageLoad(M(block_bounds), block + 1).r));
 #else
         vec2 bounds = M(boundsOf)(ABUFFER_PIXEL(march.view, march.pixel));
 #endif
@@ -334,18 +322,7 @@ Surface M(surface)(Ray ray, Hit hit) {
 #else
     uint triangle = imageLoad(M(nodes), NODE_AT(hit.id.x, NODE_WORDS - 1)).r;
 #endif
-    uvec4 corners = sceneTriangle(triangle);
-    vec3 p0 = scenePosition(corners.x);
-    vec3 a = scenePosition(corners.y) - p0;
-    vec3 b = scenePosition(corners.z) - p0;
-    vec3 p = ray.origin + hit.t * ray.direction - p0;
-    float aa = dot(a, a);
-    float ab = dot(a, b);
-    float bb = dot(b, b);
-    float area = aa * bb - ab * ab;
-    vec2 barycentrics = area > 0.0 ? vec2(bb * dot(p, a) - ab * dot(p, b), aa * dot(p, b) - ab * dot(p, a)) / area : vec2(0.0);
-    barycentrics = max(barycentrics, vec2(0.0));
-    barycentrics /= max(barycentrics.x + barycentrics.y, 1.0);
+    vec2 barycentrics = abufferNearest(triangle, ray.origin + hit.t * ray.direction);
     return sceneSurface(triangle, barycentrics, ray.direction);
 }
 #endif
@@ -418,5 +395,3 @@ void M(all)(Ray ray) {
 }
 
 #endif // PROVIDES_HITS
-
-#endif // EMPTY

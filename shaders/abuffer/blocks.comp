@@ -1,5 +1,5 @@
-// Between which depths lies what blocks of pixels have: level 0 is the pixels themselves, a block of a level 4 x 4 of the level
-// before. An invocation makes one. What is empty has its least depth beyond its largest.
+// Between which depths lies what blocks of pixels have: level 0 is the pixels themselves, a block of a level 4 x 4 of
+// the level before. An invocation makes one. What is empty has its least depth beyond its largest.
 #include "lib/iterations.glsl"
 #include "abuffer/lists.glsl"
 #include "abuffer/primitive_lists.glsl"

@@ -1,5 +1,5 @@
-// Least and largest depth of a pixel's fragments and how many there are, all by one blended attachment: the larger of the
-// negated depth, the larger of the depth, and the sum of ones.
+// Least and largest depth of a pixel's fragments and how many there are, all by one blended attachment: the larger of
+// the negated depth, the larger of the depth, and the sum of ones.
 #include "abuffer/fragment.glsl"
 
 #ifdef CUBE

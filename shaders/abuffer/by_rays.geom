@@ -1,5 +1,5 @@
-// Triangles of the frame's view, wider on all sides by what a rasterizer may round corners by: each pixel whose ray meets one has
-// a fragment of it, and whether the ray does is for the fragment to say (abuffer/fragment.glsl).
+// Triangles of the frame's view, wider on all sides by what a rasterizer may round corners by: each pixel whose ray
+// meets one has a fragment of it, and whether the ray does is for the fragment to say (abuffer/fragment.glsl).
 #include "shared/view.h"
 
 layout(triangles) in;
@@ -12,8 +12,8 @@ vec2 roomOnScreen() { return 2.0 / (16.0 * vec2(frameView.size)); }
 
 void emit(vec3 place) {
     gl_PrimitiveID = gl_PrimitiveIDIn;
-    // In the middle of the depths: the ray's interval tells what is before the near plane and behind the far one, and what is
-    // behind the eye is clipped.
+    // In the middle of the depths: the ray's interval tells what is before the near plane and behind the far one, and
+    // what is behind the eye is clipped.
     gl_Position = vec4(place.xy, 0.5 * place.z, place.z);
     EmitVertex();
 }
@@ -21,8 +21,8 @@ void emit(vec3 place) {
 void main() {
     vec3 p[3];
     for (int i = 0; i < 3; ++i) p[i] = gl_in[i].gl_Position.xyw;
-    // Edges as planes through the eye (Hasselgren, Akenine-Moller and Ohlsson, "Conservative Rasterization", GPU Gems 2, 2005),
-    // moved outwards; corners are where neighbours meet.
+    // Edges as planes through the eye (Hasselgren, Akenine-Moller and Ohlsson, "Conservative Rasterization", GPU Gems
+    // 2, 2005), moved outwards; corners are where neighbours meet.
     vec3 edge[3];
     for (int i = 0; i < 3; ++i) edge[i] = cross(p[(i + 1) % 3], p[(i + 2) % 3]);
     float side = dot(p[0], edge[0]) < 0.0 ? -1.0 : 1.0;

@@ -1,6 +1,6 @@
-// What a fragment of abuffer/scene.vert has to say of its triangle: whether it is there, and at which depth along the view's axis.
-// BY_RAYS, in the frame's view: as the ray through the pixel's middle meets the triangle, for which abuffer/by_rays.geom offers
-// fragments; elsewhere as the rasterizer finds it.
+// What a fragment of abuffer/scene.vert has to say of its triangle: whether it is there, and at which depth along the
+// view's axis. BY_RAYS, in the frame's view: as the ray through the pixel's middle meets the triangle, for which
+// abuffer/by_rays.geom offers fragments; elsewhere as the rasterizer finds it.
 #include "lib/fragment.glsl"
 
 #if defined(BY_RAYS) && !defined(CUBE)

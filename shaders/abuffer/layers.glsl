@@ -1,5 +1,5 @@
-// The module `layers` of an A-buffer: the fragments of the frame's view at a pixel, nearest first. Asked for by number it has
-// LAYERS of them; walked through, all.
+// The module `layers` of an A-buffer: the fragments of the frame's view at a pixel, nearest first. Asked for by number
+// it has LAYERS of them; walked through, all.
 #include "lib/frame.glsl"
 #include "lib/layers.glsl"
 #include "lib/iterations.glsl"
@@ -25,7 +25,8 @@ layout(r32ui) uniform readonly uimageBuffer M(nodes);
 layout(r32ui) uniform readonly uimageBuffer M(data);
 #endif
 
-// A place in a list: its node, 0 behind the end, and what else takes it onwards: SB how many follow, with buckets which one.
+// A place in a list: its node, 0 behind the end, and what else takes it onwards: SB how many follow, with buckets which
+// one.
 uvec2 M(placeFrom)(ivec2 texel, uint bucket) {
     int words = ABUFFER_PIXEL(0u, texel) * PIXEL_WORDS;
 #if defined(SB)

@@ -1,11 +1,11 @@
-// A ray's way through the pixels of an A-buffer's views (Vardis, Vasilakis, Papaioannou 2016, section 3.4): what the modules
-// for fragments and for primitives share. What differs from the paper, and why:
+// A ray's way through the pixels of an A-buffer's views (Vardis, Vasilakis, Papaioannou 2016, section 3.4): what the
+// modules for fragments and for primitives share. What differs from the paper, and why:
 //
-//   - A ray passes from pixel to pixel at the times at which it meets the planes through the eye and the pixels' borders, each
-//     worked out by itself and never summed up: nothing drifts, tMin and tMax are times too, and the times that a ray spends
-//     in its pixels lie end to end, whatever the view.
-//   - Views are left by edge connectivity in one form for all borders, the near plane too: the axis of the face that is left
-//     counts no more, and the largest of the other components of the place says which face comes next.
+//   - A ray passes from pixel to pixel at the times at which it meets the planes through the eye and the pixels'
+//     borders, each worked out by itself and never summed up: nothing drifts, tMin and tMax are times too, and the
+//     times that a ray spends in its pixels lie end to end, whatever the view.
+//   - Views are left by edge connectivity in one form for all borders, the near plane too: the axis of the face that is
+//     left counts no more, and the largest of the other components of the place says which face comes next.
 //
 // Positions count from the frame's eye, so that nothing is lost where the scene lies far from the origin.
 #include "lib/tracer.glsl"
@@ -23,7 +23,8 @@ struct ABufferShape {
 // By a module's own defines.
 #define ABUFFER_SHAPE ABufferShape(MAIN_PIXELS > 0, SIDE, NEAR_PLANE)
 
-// A ray in a view: x, y, w of clip space and the depth along the view's axis, each at time 0 and what a unit of time adds.
+// A ray in a view: x, y, w of clip space and the depth along the view's axis, each at time 0 and what a unit of time
+// adds.
 struct ABufferRay {
     vec4 at;
     vec4 add;
@@ -43,8 +44,8 @@ struct ABufferMarch {
     ivec2 pixel;
     ivec2 way; // the signs that hold for all of it in the view
     bool inside;
-    // In the pixel, or in a block of 4^level times 4^level pixels: the borders ahead and the times at which it meets them, when
-    // it leaves, and its depths.
+    // In the pixel, or in a block of 4^level times 4^level pixels: the borders ahead and the times at which it meets
+    // them, when it leaves, and its depths.
     int level;
     ivec2 border;
     vec2 times;
@@ -59,8 +60,8 @@ struct ABufferMarch {
     float jitter; // where in each part, [0, 1)
 };
 
-// How a ray passes a view: pixel by pixel, by blocks of pixels where there are `levels` of them, or, with `samples` other than 0,
-// looking at so many pixels at most. Constants, so that a program has only what it runs.
+// How a ray passes a view: pixel by pixel, by blocks of pixels where there are `levels` of them, or, with `samples`
+// other than 0, looking at so many pixels at most. Constants, so that a program has only what it runs.
 struct ABufferSteps {
     int levels;
     int samples;
@@ -154,7 +155,8 @@ ivec2 abufferPixelAt(vec4 place, ivec2 size) {
     return clamp(ivec2(floor(clamp(place.xy / place.z * 0.5 + 0.5, 0.0, 1.0) * vec2(size))), ivec2(0), size - 1);
 }
 
-// Divides the rest of its way over the view, from march.t to its end, into at most `samples` parts, equal on the view's plane.
+// Divides the rest of its way over the view, from march.t to its end, into at most `samples` parts, equal on the view's
+// plane.
 void abufferDivide(inout ABufferMarch march, int samples) {
     vec4 from = march.ray.at + march.t * march.ray.add;
     vec4 to = march.ray.at + march.end * march.ray.add;
@@ -199,8 +201,8 @@ void abufferTurn(inout ABufferMarch march, ABufferShape shape) {
 // When the ray meets the lines at these places of the view's plane.
 vec2 abufferMeets(ABufferRay ray, vec2 at) { return (at * ray.at.z - ray.at.xy) / (ray.add.xy - at * ray.add.z); }
 
-// When it meets the borders of these numbers, 0 the left or lower one of the view; never where it goes the other way, or comes
-// to an end at its vanishing point before.
+// When it meets the borders of these numbers, 0 the left or lower one of the view; never where it goes the other way,
+// or comes to an end at its vanishing point before.
 vec2 abufferTimes(ABufferMarch march, ivec2 border) {
     vec2 at = 2.0 * vec2(border) / vec2(march.size) - 1.0;
     vec2 towards = march.ray.add.xy - at * march.ray.add.z;
@@ -233,8 +235,9 @@ void abufferAhead(inout ABufferMarch march, ABufferSteps steps) {
     abufferUntil(march, max(march.t, min(min(march.times.x, march.times.y), march.end)));
 }
 
-// The pixel of a block, entered through the pixel that march.pixel is, from which stepping through it would leave it along x or
-// y at the time `met`: the place says nearly which, the times at which the borders about it are met say it exactly.
+// The pixel of a block, entered through the pixel that march.pixel is, from which stepping through it would leave it
+// along x or y at the time `met`: the place says nearly which, the times at which the borders about it are met say it
+// exactly.
 ivec2 abufferLeft(ABufferMarch march, int shift, bool alongX, float met) {
     ivec2 low = (march.pixel >> shift) << shift;
     ivec2 high = min(low + (1 << shift), march.size) - 1;
@@ -243,7 +246,8 @@ ivec2 abufferLeft(ABufferMarch march, int shift, bool alongX, float met) {
         ITERATION;
         vec2 ahead = abufferTimes(march, pixel + max(march.way, ivec2(0)));
         vec2 behind = abufferTimes(march, pixel + max(-march.way, ivec2(0)));
-        // Of two borders that are met at once that of x comes first. One behind that is never met lies before the start.
+        // Of two borders that are met at once that of x comes first. One behind that is never met lies before the
+        // start.
         bvec2 on = bvec2(ahead.x <= met, ahead.y < met);
         bvec2 back = bvec2(behind.x > met && behind.x < rayInfinity, behind.y >= met && behind.y < rayInfinity);
         pixel += march.way * (ivec2(on) - ivec2(back) * ivec2(not(on)));
@@ -285,8 +289,8 @@ int abufferBlocks(ABufferShape shape, ivec2 mainSize, int level) {
     return main.x * main.y + int(abufferFaces) * side * side;
 }
 
-// The number of the block, or pixel, that the ray is in: level 0 of all views comes first, then level 1 of all, and so on up to
-// level 3, each view in rows.
+// The number of the block, or pixel, that the ray is in: level 0 of all views comes first, then level 1 of all, and so
+// on up to level 3, each view in rows.
 int abufferBlock(ABufferMarch march, ABufferShape shape, ivec2 mainSize) {
     int first = (march.level > 0 ? abufferBlocks(shape, mainSize, 0) : 0) +
                 (march.level > 1 ? abufferBlocks(shape, mainSize, 1) : 0) +

@@ -1,6 +1,7 @@
-// From how many records each bucket has to where they begin: SUM adds up runs of pixels, SCAN (one invocation) says how many
-// lie before each run, PLACE where the records of each bucket begin. A bucket's own count stands where the next one begins
-// and becomes the place where its records begin, from which the records are counted on to its end as they come.
+// From how many records each bucket has to where they begin: SUM adds up runs of pixels, SCAN (one invocation) says how
+// many lie before each run, PLACE where the records of each bucket begin. A bucket's own count stands where the next
+// one begins and becomes the place where its records begin, from which the records are counted on to its end as they
+// come.
 #include "lib/iterations.glsl"
 #include "abuffer/primitive_lists.glsl"
 

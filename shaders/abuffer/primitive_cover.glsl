@@ -1,10 +1,11 @@
-// Which pixels of a view a triangle touches, and between which depths in each: never too few and never too little, whatever
-// rounding does (the conservative rasterization of "DIRT: Deferred Image-based Ray Tracing", Vardis, Vasilakis, Papaioannou,
-// HPG 2016, without the hardware for it).
+// Which pixels of a view a triangle touches, and between which depths in each: never too few and never too little,
+// whatever rounding does (the conservative rasterization of "DIRT: Deferred Image-based Ray Tracing", Vardis,
+// Vasilakis, Papaioannou, HPG 2016, without the hardware for it).
 //
-// Everything is in clip space's x, y and w, where what a pixel sees is the cone of the directions (x, y, 1) of its square, and
-// what a triangle covers the cone of its corners. Two cones are apart if a side of one of them parts them: so corners behind
-// the eye need no clipping (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", 1997).
+// Everything is in clip space's x, y and w, where what a pixel sees is the cone of the directions (x, y, 1) of its
+// square, and what a triangle covers the cone of its corners. Two cones are apart if a side of one of them parts them:
+// so corners behind the eye need no clipping (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous
+// Coordinates", 1997).
 #include "abuffer/march.glsl"
 
 // Of a pixel's half width beyond its own half: what the rounding of a ray's place in the view may be.
@@ -16,7 +17,8 @@ struct CoveredTriangle {
     // At least -slack over all directions that it covers.
     vec3 edges[3];
     vec3 slack;
-    // Depth is `plane` over the dot product with the normal, where neither is in doubt; else it lies between the corners'.
+    // Depth is `plane` over the dot product with the normal, where neither is in doubt; else it lies between the
+    // corners'.
     vec3 normal;
     float plane;
     float normalDoubt;

@@ -1,4 +1,5 @@
-// Finds which pixels each triangle touches in each view of the A-buffer, and keeps a record of it there. By its defines:
+// Finds which pixels each triangle touches in each view of the A-buffer, and keeps a record of it there. By its
+// defines:
 //
 //     (none)  an invocation a triangle and view: few pixels are looked at here, more are listed as blocks
 //     BLOCKS  an invocation a listed block of 64 x 64 pixels: lists its tiles

@@ -1,11 +1,11 @@
-// Module: `tracer` (PROVIDES_TRACER) or `hits` (PROVIDES_HITS) through the primitives of an A-buffer (Vardis, Vasilakis,
-// Papaioannou, "DIRT: Deferred Image-based Ray Tracing", HPG 2016). A ray passes the pixels of the views as it does with
-// fragments (abuffer/march.glsl); a record there only says which triangle is worth a test, and the test is that of the
-// hierarchy (shared/triangle.h), with the same numbers: hits are the same to the bit.
+// Module: `tracer` (PROVIDES_TRACER) or `hits` (PROVIDES_HITS) through the primitives of an A-buffer (Vardis,
+// Vasilakis, Papaioannou, "DIRT: Deferred Image-based Ray Tracing", HPG 2016). A ray passes the pixels of the views as
+// it does with fragments (abuffer/march.glsl); a record there only says which triangle is worth a test, and the test is
+// that of the hierarchy (shared/triangle.h), with the same numbers: hits are the same to the bit.
 //
-// The paper asks that a hit projects to the pixel in which it was found. Here time says so: what a ray spends in its pixels
-// lies end to end. The nearest hit is settled once the ray has passed the pixel in which its time lies; of all hits each is
-// handed on in the one pixel in which its time lies.
+// The paper asks that a hit projects to the pixel in which it was found. Here time says so: what a ray spends in its
+// pixels lies end to end. The nearest hit is settled once the ray has passed the pixel in which its time lies; of all
+// hits each is handed on in the one pixel in which its time lies.
 #include "lib/tracer.glsl"
 #include "lib/scene.glsl"
 #include "lib/iterations.glsl"
@@ -56,8 +56,8 @@ vec2 M(boundsOf)(int pixel) {
     return uintBitsToFloat(uvec2(imageLoad(M(cells), pixel * PRIMITIVE_WORDS).r, imageLoad(M(cells), pixel * PRIMITIVE_WORDS + 1).r));
 }
 
-// To the next pixel that has records where the ray is; false if the view is left before. A loop of its own, and nothing but the
-// bounds in it: on a driver that runs both sides of every branch a loop is all that can be left early.
+// To the next pixel that has records where the ray is; false if the view is left before. A loop of its own, and nothing
+// but the bounds in it: on a driver that runs both sides of every branch a loop is all that can be left early.
 bool M(goesOn)(inout ABufferMarch march) {
     while (march.inside) {
         ITERATION;
@@ -96,8 +96,8 @@ ivec2 M(bucketsAhead)(int pixel, vec2 depths) {
 #endif
 }
 
-// Goes on from record `at` to the next that is worth a test; its triangle. A loop of its own: it is all that can be left early
-// on a driver that runs both sides of every branch.
+// Goes on from record `at` to the next that is worth a test; its triangle. A loop of its own: it is all that can be
+// left early on a driver that runs both sides of every branch.
 uint M(nextTriangle)(inout uint at, uint end, vec2 depths, out uint bucket) {
     uvec4 record = uvec4(0u);
     for (; at < end; ++at) {

@@ -1,11 +1,12 @@
-// Sorts the lists of the pixels by depth, fragments at one depth by their triangle, so that the result depends on no order of
-// arrival, and sets the links, heads and tails that the structure has (section 3.3, reorder stage). An item is a pixel, or
-// with COUNTER and buckets a list of a pixel.
+// Sorts the lists of the pixels by depth, fragments at one depth by their triangle, so that the result depends on no
+// order of arrival, and sets the links, heads and tails that the structure has (section 3.3, reorder stage). An item is
+// a pixel, or with COUNTER and buckets a list of a pixel.
 //
-// Up to SHORT fragments are sorted by insertion while they are read. Up to MEDIUM are merged in place, from runs of one node on;
-// those of SB, which has no links, are sorted by Shell's method. Longer lists, up to LONGEST, would take an invocation more
-// iterations than every driver runs (lib/iterations.glsl): they are listed, and each doubling of the runs is a dispatch over
-// that list (MERGE: the runs' width), and so is setting the links (LINK). What is longer stays as it is, and its length is told.
+// Up to SHORT fragments are sorted by insertion while they are read. Up to MEDIUM are merged in place, from runs of one
+// node on; those of SB, which has no links, are sorted by Shell's method. Longer lists, up to LONGEST, would take an
+// invocation more iterations than every driver runs (lib/iterations.glsl): they are listed, and each doubling of the
+// runs is a dispatch over that list (MERGE: the runs' width), and so is setting the links (LINK). What is longer stays
+// as it is, and its length is told.
 #include "lib/iterations.glsl"
 #include "shared/work_list.h"
 #include "abuffer/lists.glsl"

@@ -1,5 +1,5 @@
-// The scene's triangles in one view of the A-buffer: the frame's, or with CUBE a face of the cube, whose eye stands the near
-// distance behind the frame's, so that the six faces leave no gap about the eye (section 3.2).
+// The scene's triangles in one view of the A-buffer: the frame's, or with CUBE a face of the cube, whose eye stands the
+// near distance behind the frame's, so that the six faces leave no gap about the eye (section 3.2).
 #include "lib/vertex.glsl"
 #include "shared/abuffer.h"
 #include "shared/view.h"

@@ -1,6 +1,6 @@
-// What the store stage begins with, from how many fragments each pixel of all views has, and between which depths. SUM: the
-// fragments of a run of pixels; SCAN: the fragments before each run (one invocation); PLACE: where the nodes of each pixel
-// lie, which is the prefix sum, and an empty list for it; with RANGES the empty lists alone.
+// What the store stage begins with, from how many fragments each pixel of all views has, and between which depths. SUM:
+// the fragments of a run of pixels; SCAN: the fragments before each run (one invocation); PLACE: where the nodes of
+// each pixel lie, which is the prefix sum, and an empty list for it; with RANGES the empty lists alone.
 #include "abuffer/lists.glsl"
 
 layout(local_size_x = LOCAL_SIZE) in;

@@ -1,6 +1,6 @@
-// Every fragment becomes a node in the list of its pixel (section 3.3, store stage), in no order. COUNTER: the node is the
-// next of all, by one counter, and goes in front of the list of its bucket. Otherwise the pixel's nodes lie side by side from
-// where the prefix sum said, and no list is kept yet: the address alone tells.
+// Every fragment becomes a node in the list of its pixel (section 3.3, store stage), in no order. COUNTER: the node is
+// the next of all, by one counter, and goes in front of the list of its bucket. Otherwise the pixel's nodes lie side by
+// side from where the prefix sum said, and no list is kept yet: the address alone tells.
 #include "abuffer/fragment.glsl"
 #include "abuffer/lists.glsl"
 
