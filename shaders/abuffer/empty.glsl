@@ -1,4 +1,4 @@
-// Module: `tracer` (PROVIDES_TRACER) or `hits` (PROVIDES_HITS) of an A-buffer that holds nothing: no ray meets anything.
+// Module: `tracer` (PROVIDES_TRACER) or `hits` (PROVIDES_HITS) of an A-buffer without fragments: nothing is met.
 #include "lib/tracer.glsl"
 
 void M(aim)(inout Ray ray) {}

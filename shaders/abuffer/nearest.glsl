@@ -1,7 +1,7 @@
 // Where a fragment's triangle is nearest to a place, since a hit lies somewhere in the fragment's pixel.
 #include "lib/scene.glsl"
 
-// Barycentric weights (of the second and third corner) of the triangle's plane where it is nearest to `place`, in render
+// The triangle's barycentric weights (of its second and third corner) where its plane is nearest to `place`, in render
 // space, moved into the triangle.
 vec2 abufferNearest(uint triangle, vec3 place) {
     uvec4 corners = sceneTriangle(triangle);

@@ -4,6 +4,9 @@
 #include <port:tracer>
 #include <port:radiance>
 #include "ray_effects/path.glsl"
+#ifdef SURFACES
+#include "lib/material.glsl"
+#endif
 #ifdef PANELS
 #include "lib/lights.glsl"
 #endif
