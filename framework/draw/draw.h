@@ -21,6 +21,9 @@ struct DrawState {
     bool logicOr = false; // glLogicOp(GL_OR) on integer attachments
     bool depthClamp = false;
     std::optional<glm::uvec2> viewport = {}; // without attachments: the size of the rasterized area
+    // Without attachments: the size of a second one, which shaders choose by gl_ViewportIndex 1.
+    std::optional<glm::uvec2> secondViewport = {};
+    std::uint32_t instances = 1; // how often drawScene draws each triangle (gl_InstanceID)
 
     static DrawState overwrite() {
         return {.depth = Compare::Always, .depthWrite = false, .cull = Cull::None};

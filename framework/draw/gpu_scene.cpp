@@ -265,7 +265,8 @@ void GpuScene::draw(const DrawState& state, const std::vector<TriangleClass>& cl
         setCulling(doubleSided ? Cull::None : state.cull);
         if (first >= 0) glProgramUniform1ui(program.name(), first, range.first);
         const auto* offset = reinterpret_cast<const void*>(size_t{range.first} * 3 * sizeof(std::uint32_t));
-        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT, offset);
+        glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT, offset,
+                                static_cast<GLsizei>(state.instances));
     }
 }
 

@@ -123,9 +123,12 @@ void StepCommands::beginDraw(const DrawState& state) {
     static_cast<void>(program());
     if (targetSize_) return;
     if (!state.viewport) fail("a draw without attachments needs DrawState::viewport");
-    const glm::uvec2 size = *state.viewport;
-    glBindFramebuffer(GL_FRAMEBUFFER, context_.framebuffers.get({}, {}, {size.x, size.y, 1}));
+    const glm::uvec2 size = *state.viewport, second = state.secondViewport.value_or(size);
+    const glm::uvec2 area = glm::max(size, second);
+    glBindFramebuffer(GL_FRAMEBUFFER, context_.framebuffers.get({}, {}, {area.x, area.y, 1}));
     setViewport(size);
+    if (state.secondViewport)
+        glViewportIndexedf(1, 0, 0, static_cast<float>(second.x), static_cast<float>(second.y));
 }
 
 void StepCommands::drawScene(const DrawState& state, const std::vector<TriangleClass>& classes) {

@@ -167,6 +167,8 @@ bool Executor::countersFit() {
         std::uint32_t wanted = 0;
         std::memcpy(&wanted, bytes.data() + 4 * i, 4);
         const auto& [pass, counter] = counters[i];
+        report_.values[plan().passes[static_cast<size_t>(pass)].name]["elements of " + counter->port] =
+            wanted;
         if (wanted <= counter->capacity) continue;
         report_.overflows[plan().passes[static_cast<size_t>(pass)].name][counter->port] = wanted;
         tooSmall.insert(pass);

@@ -31,6 +31,8 @@ RunStats gatherStats(Renderer& renderer, const Profile& profile, const std::stri
     stats.frameMs = profile.frame();
     stats.leftOut = renderer.plan().leftOut;
     stats.memory = renderer.plan().memory;
+    for (const PlanResource& resource : renderer.plan().resources)
+        stats.resources.emplace_back(resource.port.text(), resource.desc.totalBytes());
     stats.previewsMs = profile.previews();
     stats.previews = renderer.plan().previews;
     stats.values = renderer.last().values;
@@ -46,6 +48,8 @@ std::string statsJson(const RunStats& stats) {
     for (const auto& [group, spread] : stats.groups) groups[group] = spreadJson(spread);
     OutJson leftOut = OutJson::array();
     for (const LeftOut& item : stats.leftOut) leftOut.push_back({{"what", item.what}, {"why", item.why}});
+    OutJson resources = OutJson::array();
+    for (const auto& [port, bytes] : stats.resources) resources.push_back({{"port", port}, {"bytes", bytes}});
     OutJson json = {
         {"graph", stats.graph},
         {"graph_path", stats.graphPath},
@@ -67,6 +71,7 @@ std::string statsJson(const RunStats& stats) {
          {{"transient", stats.memory.transient},
           {"unshared", stats.memory.unshared},
           {"persistent", stats.memory.persistent}}},
+        {"resources", resources},
         {"previews",
          {{"ms", spreadJson(stats.previewsMs)},
           {"memory", stats.previews.memory},

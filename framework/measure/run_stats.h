@@ -3,6 +3,7 @@
 #include "core/spin.h"
 #include "measure/profile.h"
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kestrel {
@@ -20,6 +21,9 @@ struct RunStats {
     Spread frameMs;
     std::vector<LeftOut> leftOut;
     MemoryReport memory;
+    // What each port of a pass takes by itself, in bytes, in the order of the plan: parts of MemoryReport's
+    // `unshared` and `persistent`, where a history counts twice.
+    std::vector<std::pair<std::string, std::uint64_t>> resources;
     // What previews cost besides: they are in none of the figures above, but that steps which they alter take
     // longer.
     Spread previewsMs;

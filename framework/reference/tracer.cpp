@@ -7,6 +7,7 @@
 #include "reference/embree.h"
 #include "shared/triangle.h"
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
@@ -99,7 +100,7 @@ void fillPacket(RTCRay16& to, int* valid, std::span<const TraceRay> rays, size_t
 } // namespace
 
 struct ReferenceTracer::State {
-    State(const Geometry& geometry, const Scene& scene, bool blendedAsMasked)
+    State(const Geometry& geometry, const Scene& scene, bool blendedAsMasked, BuildQuality quality)
         : alpha(geometry, scene, blendedAsMasked)
         , coincident(geometry)
         , positions(geometry.positions)
@@ -109,8 +110,13 @@ struct ReferenceTracer::State {
         , handle(device.get() ? rtcNewScene(device.get()) : nullptr) {
         if (!handle.get()) throw MachineError("Embree gives no device");
         rtcSetSceneFlags(handle.get(), RTC_SCENE_FLAG_ROBUST);
+        constexpr RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
+                                                 RTC_BUILD_QUALITY_HIGH};
+        rtcSetSceneBuildQuality(handle.get(), qualities[static_cast<int>(quality)]);
         if (geometry.triangleCount() > 0) attach(geometry);
+        const auto begin = std::chrono::steady_clock::now();
         rtcCommitScene(handle.get());
+        buildMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
         throwIfFailed(device.get(), "building");
     }
 
@@ -246,14 +252,16 @@ struct ReferenceTracer::State {
     std::vector<std::uint32_t> indices;
     mutable std::once_flag exactOnce;
     Box bounds;
+    double buildMs = 0;
     std::uint32_t firstTriangle[2] = {0, 0}; // of each Embree geometry
     Device device;
     SceneHandle handle;
     mutable std::unique_ptr<SceneHandle> exactHandle;
 };
 
-ReferenceTracer::ReferenceTracer(const Geometry& geometry, const Scene& scene, bool blendedAsMasked)
-    : state_(std::make_unique<State>(geometry, scene, blendedAsMasked)) {}
+ReferenceTracer::ReferenceTracer(const Geometry& geometry, const Scene& scene, bool blendedAsMasked,
+                                 BuildQuality quality)
+    : state_(std::make_unique<State>(geometry, scene, blendedAsMasked, quality)) {}
 
 std::optional<TraceHit> ReferenceTracer::closestHit(const TraceRay& ray) const {
     RTCRayHit query;
@@ -321,22 +329,27 @@ void ReferenceTracer::anyHits(std::span<const TraceRay> rays, std::span<std::uin
     }
 }
 
+double ReferenceTracer::buildMs() const { return state_->buildMs; }
+
 const Box& ReferenceTracer::bounds() const { return state_->bounds; }
 
 #else
 
 struct ReferenceTracer::State {};
 
-ReferenceTracer::ReferenceTracer(const Geometry&, const Scene&, bool) {
+ReferenceTracer::ReferenceTracer(const Geometry&, const Scene&, bool, BuildQuality) {
     throw MachineError("this build has no Embree, which the reference needs (libembree-dev)");
 }
 
 // No object of this class exists without Embree; what follows only satisfies the linker.
 std::optional<TraceHit> ReferenceTracer::closestHit(const TraceRay&) const { return std::nullopt; }
 bool ReferenceTracer::anyHit(const TraceRay&) const { return false; }
+double ReferenceTracer::buildMs() const { return 0; }
 void ReferenceTracer::allHits(const TraceRay&, const std::function<bool(const TraceHit&)>&) const {}
 void ReferenceTracer::closestHits(std::span<const TraceRay>, std::span<TraceHit>, bool) const {}
 void ReferenceTracer::anyHits(std::span<const TraceRay>, std::span<std::uint8_t>) const {}
+double ReferenceTracer::buildMs() const { return state_->buildMs; }
+
 const Box& ReferenceTracer::bounds() const {
     static const Box none;
     return none;

@@ -13,6 +13,10 @@ namespace kestrel {
 // Rays that batches are traced in packets of.
 inline constexpr int tracePacket = 16;
 
+// How well Embree builds its hierarchy: fast for what moves each frame (Morton codes), as usual, or with
+// triangles split between nodes.
+enum class BuildQuality : std::uint8_t { Low, Medium, High };
+
 // Traces the geometry that it was built from (in Embree's robust mode, both sides of every triangle). Of
 // triangles with the same corners the lowest is met, whatever the processor. Points
 // of masked and blended materials whose base colour alpha is below the cutoff let rays pass. All queries may
@@ -21,7 +25,8 @@ class ReferenceTracer {
 public:
     // Copies what it needs. `blendedAsMasked` false: blended materials stop rays wherever their alpha is
     // above 0. Throws MachineError if Embree is not built in or refuses.
-    ReferenceTracer(const Geometry& geometry, const Scene& scene, bool blendedAsMasked = true);
+    ReferenceTracer(const Geometry& geometry, const Scene& scene, bool blendedAsMasked = true,
+                    BuildQuality quality = BuildQuality::Medium);
     ~ReferenceTracer();
     ReferenceTracer(ReferenceTracer&&) noexcept;
     ReferenceTracer& operator=(ReferenceTracer&&) noexcept;
@@ -39,6 +44,8 @@ public:
     // 1 where something was hit, else 0.
     void anyHits(std::span<const TraceRay> rays, std::span<std::uint8_t> hits) const;
 
+    // How long Embree took for its hierarchy alone, of what the constructor took.
+    [[nodiscard]] double buildMs() const;
     [[nodiscard]] const Box& bounds() const; // of the geometry, render space
 
 private:

@@ -87,6 +87,8 @@ struct Flattener::State {
                 primitive.material < 0 ? materials.size() - 1 : static_cast<size_t>(primitive.material));
             one.triangleClass = classOf(materials[one.material]);
             one.firstVertex = vertices;
+            geometry.instances.push_back({static_cast<std::uint32_t>(vertices),
+                                          static_cast<std::uint32_t>(primitive.positions.size())});
             one.firstTriangle = triangles[static_cast<size_t>(one.triangleClass)];
             vertices += primitive.positions.size();
             triangles[static_cast<size_t>(one.triangleClass)] += primitive.indices.size() / 3;

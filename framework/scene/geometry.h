@@ -42,6 +42,8 @@ struct Geometry {
     Range ranges[static_cast<size_t>(TriangleClass::Count)];
     // The vertices (first, count) that differ from one time of the scene to another; those between never do.
     std::vector<Range> moving;
+    // The vertices (first, count) of each instance of a mesh's primitive, in the order of vertices.
+    std::vector<Range> instances;
     // Counts the frames in which an instance began or ended to be mirrored: with another number, `indices`
     // differ.
     std::uint32_t turns = 0;

@@ -16,6 +16,9 @@ PassType ABufferReorder::type() {
         .input("segments", PortKind::Buffer, "Where each pixel's nodes lie, if they lie side by side")
         .output("pixels", PortKind::Buffer, "What each pixel of each view knows of its list")
         .output("nodes", PortKind::Buffer, "The nodes, sorted and linked")
+        .output("triangles", PortKind::Buffer,
+                "`data`, where somebody reads it: fragments at one depth are in the order of their triangles "
+                "then, and otherwise in that of their arrival, which nobody can tell")
         .internal("long_lists", PortKind::Buffer, "Lists that take steps of their own to sort")
         .internal("longest", PortKind::Buffer,
                   "Fragments of the longest list, if it is too long to be sorted");
@@ -27,13 +30,31 @@ Declaration ABufferReorder::declare(const World& world, const Inputs& inputs, co
     const FragmentLists& lists = stored.lists;
     const bool bucketed = lists.buckets > 1 || lists.structure == FragmentLists::Structure::LLB ||
                           lists.structure == FragmentLists::Structure::DLLB;
-    declaration.outputs.push_back(
-        {.port = "pixels", .desc = inputs["stored_pixels"].desc, .updates = "stored_pixels"});
+    const bool counted = !inputs["segments"].constant;
+    Output pixels{.port = "pixels", .desc = inputs["stored_pixels"].desc, .updates = "stored_pixels"};
+    if (counted) {
+        const std::uint64_t words =
+            abufferPixels(lists, world.size) * static_cast<std::uint64_t>(abufferPixelWords(lists));
+        pixels.desc.bytes = 4 * words;
+        pixels.updates.clear();
+        pixels.clear = glm::vec4(0);
+        if (static_cast<std::int64_t>(words) > world.capabilities.maxTextureBufferTexels)
+            declaration.problems.push_back(
+                {"pixels",
+                 fmt::format("needs {} texels in a buffer texture; the limit is {}", words,
+                             world.capabilities.maxTextureBufferTexels),
+                 true});
+    }
+    declaration.outputs.push_back(std::move(pixels));
     declaration.outputs.push_back({.port = "nodes", .desc = stored, .updates = "stored_nodes"});
+    // What nobody reads is not stored either.
+    const bool triangles = demand.reads("triangles");
+    if (triangles)
+        declaration.outputs.push_back({.port = "triangles", .desc = inputs["data"].desc, .same = "data"});
     if (inputs["stored_nodes"].constant) {
         declaration.leftOut.push_back({"sorting", "there are no fragments"});
         for (Output& output : declaration.outputs) {
-            output.same = output.updates;
+            if (output.same.empty()) output.same = output.updates;
             output.updates.clear();
         }
         return declaration;
@@ -51,9 +72,9 @@ Declaration ABufferReorder::declare(const World& world, const Inputs& inputs, co
                          linked ? "" : " without links"),
              true});
 
-    const bool counted = !inputs["segments"].constant;
-    const std::uint64_t items = abufferPixels(lists, world.size) *
-                                (bucketed && !counted ? static_cast<std::uint64_t>(lists.buckets) : 1);
+    const std::uint64_t items =
+        abufferPixels(lists, world.size) *
+        (bucketed && !counted && !lists.shifted ? static_cast<std::uint64_t>(lists.buckets) : 1);
     // In rows, since an axis has 65,535 work groups at most.
     static constexpr std::uint64_t row = 1 << 21;
     Step sort{.name = "sort",
@@ -74,7 +95,8 @@ Declaration ABufferReorder::declare(const World& world, const Inputs& inputs, co
                          {"MEDIUM", std::to_string(mediumList)},
                          {"LONGEST", std::to_string(longest)}});
     if (!counted) sort.defines.emplace("COUNTER", "1");
-    if (lists.decoupled) sort.uses.push_back({.port = "data", .access = Access::Image});
+    if (lists.decoupled && triangles) sort.uses.push_back({.port = "data", .access = Access::Image});
+    if (lists.decoupled && !triangles) sort.defines.emplace("NO_TRIANGLES", "1");
     if (linked) {
         const std::uint64_t capacity = std::max<std::uint64_t>(demand.grown("long_lists"), 4096);
         declaration.outputs.push_back({.port = "long_lists",

@@ -5,10 +5,11 @@
 // of its own pixel.
 #pragma once
 #include "graph/registry.h"
+#include "views.h"
 
 namespace kestrel {
 
-enum class ABufferAllocation : std::uint8_t { Counter, Counted };
+enum class ABufferAllocation : std::uint8_t { Counter, Pages, Counted };
 
 class ABufferStore final : public Pass {
 public:
@@ -18,16 +19,29 @@ public:
 
     FragmentLists::Structure structure = FragmentLists::Structure::DLLB;
     int buckets = 4;
+    enum class Boundaries : std::uint8_t { Uniform, Shifted };
+    Boundaries boundaries = Boundaries::Uniform;
     bool decoupled = true;
     ABufferAllocation allocation = ABufferAllocation::Counted;
+    ABufferDrawing drawing = ABufferDrawing::ByView;
+    bool fetch = true;
 
 private:
     [[nodiscard]] bool isCounted() const {
         return allocation == ABufferAllocation::Counted || structure == FragmentLists::Structure::SB;
     }
+    // Whether the numbers of fragments that a prefix sum is made of are not those of the bounds, which a
+    // geometry shader's fragments, rounded otherwise, need not have.
+    [[nodiscard]] bool countsItself(const FragmentLists& lists) const {
+        return isCounted() &&
+               (!lists.counted || abufferDrawing(drawing, lists) == ABufferDrawing::GeometryShader);
+    }
+    [[nodiscard]] bool isPaged() const { return !isCounted() && allocation == ABufferAllocation::Pages; }
+    void declareCounts(const World& world, const FragmentLists& lists, Declaration& declaration) const;
     [[nodiscard]] std::vector<Step> beginSteps(const Defines& defines, const FragmentLists& lists,
-                                               std::uint64_t pixels) const;
-    [[nodiscard]] Step drawStep(const World& world, const FragmentLists& lists, bool ofCube) const;
+                                               std::uint64_t pixels, bool fetches) const;
+    [[nodiscard]] Step drawStep(const World& world, const FragmentLists& lists, ABufferViews views,
+                                bool keepsData, bool fetches) const;
 };
 
 } // namespace kestrel

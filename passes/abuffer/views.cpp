@@ -1,4 +1,5 @@
 #include "views.h"
+#include "draw/material_defines.h"
 #include <bit>
 #include <fmt/format.h>
 
@@ -52,16 +53,70 @@ Defines abufferDefines(const FragmentLists& lists, const Extent& frame) {
         {"NEAR_PLANE", fmt::format("uintBitsToFloat({}u)", std::bit_cast<std::uint32_t>(lists.nearPlane))}};
     if (bucketed) defines.emplace("BUCKETED", "1");
     if (lists.blended == Blended::Alone) defines.emplace("BY_RAYS", "1");
+    if (lists.shifted) defines.emplace("SHIFTED", "1");
     if (lists.structure == Structure::DLL || lists.structure == Structure::DLLB)
         defines.emplace("TWO_WAYS", "1");
     if (lists.decoupled) defines.emplace("DECOUPLED", "1");
     return defines;
 }
 
-std::vector<std::string> abufferShaders(const FragmentLists& lists, bool ofCube, const char* fragment) {
-    if (lists.blended == Blended::Alone && !ofCube)
-        return {"abuffer/scene.vert", "abuffer/by_rays.geom", fragment};
-    return {"abuffer/scene.vert", fragment};
+ABufferDrawing abufferDrawing(ABufferDrawing asked, const FragmentLists& lists) {
+    return lists.blended == Blended::Alone ? ABufferDrawing::ByView : asked;
+}
+
+Step abufferSceneStep(const World& world, const FragmentLists& lists, ABufferViews views,
+                      ABufferDrawing drawing, bool layered, const std::string& fragment) {
+    Step step{.name = views == ABufferViews::All     ? "views"
+                      : views == ABufferViews::Faces ? "faces"
+                                                     : "frame",
+              .shaders = {"abuffer/scene.vert"},
+              .defines = materialDefines(world.facts, lists.blended)};
+    step.defines.merge(abufferDefines(lists, world.size));
+    drawing = abufferDrawing(drawing, lists);
+    const bool geometry = drawing == ABufferDrawing::GeometryShader;
+    if (drawing == ABufferDrawing::ByView || (views == ABufferViews::Frame && !geometry)) {
+        step.defines.emplace("VIEW", views == ABufferViews::Frame ? "0u" : "(1u + face)");
+        if (views == ABufferViews::Faces) step.defines.emplace("CUBE", "1");
+        if (views == ABufferViews::Frame && lists.blended == Blended::Alone)
+            step.shaders.emplace_back("abuffer/by_rays.geom");
+    } else {
+        step.defines.emplace("SEVERAL_VIEWS", "1");
+        step.defines.emplace("FIRST_VIEW", views == ABufferViews::Faces ? "1" : "0");
+        step.defines.emplace("LAST_VIEW",
+                             views == ABufferViews::Frame ? "0" : std::to_string(shared::abufferFaces));
+        if (layered && views == ABufferViews::Faces) step.defines.emplace("LAYERED", "1");
+        step.defines.emplace(geometry ? "GEOMETRY_SHADER" : "VERTEX_LAYER", "1");
+        if (geometry) step.shaders.emplace_back("abuffer/scene.geom");
+    }
+    step.shaders.push_back(fragment);
+    return step;
+}
+
+void abufferDrawScene(Commands& commands, DrawState state, const FragmentLists& lists, const Extent& frame,
+                      ABufferViews views, ABufferDrawing drawing, bool layered) {
+    drawing = abufferDrawing(drawing, lists);
+    const glm::uvec2 faces(static_cast<std::uint32_t>(lists.side)), main(frame.width, frame.height);
+    state.viewport = views == ABufferViews::Faces ? faces : main;
+    if (views != ABufferViews::Frame) state.secondViewport = faces;
+    if (views == ABufferViews::Frame || drawing != ABufferDrawing::ByView) {
+        if (views != ABufferViews::Frame && drawing == ABufferDrawing::VertexLayer)
+            state.instances = shared::abufferFaces + (views == ABufferViews::All ? 1 : 0);
+        commands.drawScene(state, abufferClasses(lists.blended));
+    } else if (layered) {
+        commands.drawSceneLayers(state, abufferClasses(lists.blended), shared::abufferFaces,
+                                 [&](std::uint32_t face) { commands.set("face", face); });
+    } else {
+        for (std::uint32_t face = 0; face < shared::abufferFaces; ++face) {
+            commands.set("face", face);
+            commands.drawScene(state, abufferClasses(lists.blended));
+        }
+    }
+}
+
+std::optional<std::string> abufferCannotDraw(ABufferDrawing drawing, const Capabilities& capabilities) {
+    constexpr const char* extension = "GL_ARB_shader_viewport_layer_array";
+    if (drawing != ABufferDrawing::VertexLayer || capabilities.has(extension)) return std::nullopt;
+    return fmt::format("`vertex_layer` needs {}, which this driver has not", extension);
 }
 
 std::vector<TriangleClass> abufferClasses(Blended blended) {

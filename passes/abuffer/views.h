@@ -3,6 +3,8 @@
 #include "execute/commands.h"
 #include "graph/pass.h"
 #include "shared/abuffer.h"
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace kestrel {
@@ -20,11 +22,28 @@ namespace kestrel {
 // What shaders of the A-buffer need to know of it (shaders/abuffer/lists.glsl).
 [[nodiscard]] Defines abufferDefines(const FragmentLists& lists, const Extent& frame);
 
-// The program that draws the scene into the frame's view or a face of the cube. Blended surfaces alone lie in
-// the frame's view where the ray through a pixel's middle meets them, not where the rasterizer finds them,
-// which rounds corners to parts of a pixel.
-[[nodiscard]] std::vector<std::string> abufferShaders(const FragmentLists& lists, bool ofCube,
-                                                      const char* fragment);
+// How the scene is drawn into several views: one after the other; all at once, by a geometry shader that
+// gives each triangle to every view (as in the paper) or by instances whose vertices choose it.
+enum class ABufferDrawing : std::uint8_t { ByView, GeometryShader, VertexLayer };
+
+// Blended surfaces alone are drawn view by view: they lie in the frame's view where the ray through a pixel's
+// middle meets them, not where the rasterizer finds them, which rounds corners to parts of a pixel.
+[[nodiscard]] ABufferDrawing abufferDrawing(ABufferDrawing asked, const FragmentLists& lists);
+
+// Which views a step draws into: the frame's, the faces', or both, which takes another drawing than ByView.
+enum class ABufferViews : std::uint8_t { Frame, Faces, All };
+
+// The program of a step that draws the scene's triangles into views, but for its fragment stage, which it
+// calls `fragment`. A geometry shader rounds vertices otherwise than none, for one view as for all.
+// `layered`: faces are the layers of its attachments; otherwise it has none.
+[[nodiscard]] Step abufferSceneStep(const World& world, const FragmentLists& lists, ABufferViews views,
+                                    ABufferDrawing drawing, bool layered, const std::string& fragment);
+// What it does when it runs, once uniforms are set.
+void abufferDrawScene(Commands& commands, DrawState state, const FragmentLists& lists, const Extent& frame,
+                      ABufferViews views, ABufferDrawing drawing, bool layered);
+// Nothing, or why this machine cannot draw so.
+[[nodiscard]] std::optional<std::string> abufferCannotDraw(ABufferDrawing drawing,
+                                                           const Capabilities& capabilities);
 
 // All triangles of which fragments may be kept, as rays meet them: passes draw both sides of each.
 [[nodiscard]] std::vector<TriangleClass> abufferClasses(Blended blended);

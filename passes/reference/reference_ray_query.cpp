@@ -29,6 +29,8 @@ PassType ReferenceRayQuery::type() {
         .carries(content::elements("HitRecord"))
         .choice("query", &ReferenceRayQuery::query, {"any", "closest"},
                 "Is anything there, or what is nearest?")
+        .choice("build", &ReferenceRayQuery::build, {"low", "medium", "high"},
+                "Of Embree's hierarchy: built fast, as usual, or for fast tracing")
         .number("threads", &ReferenceRayQuery::threads, 1, 256, "threads", "Of the CPU");
 }
 
@@ -40,7 +42,7 @@ Declaration ReferenceRayQuery::declare(const World&, const Inputs& inputs, const
         declaration.steps.push_back(
             {.name = name, .run = std::move(run), .uses = std::move(uses), .group = group});
     };
-    step("build", &ReferenceRayQuery::build, {}, "generation");
+    step("build", &ReferenceRayQuery::buildHierarchy, {}, "generation");
     step("take", &ReferenceRayQuery::take, {{.port = "rays", .access = Access::Host}}, "transfer");
     step("trace", &ReferenceRayQuery::trace, {}, "tracing");
     step("give", &ReferenceRayQuery::give, {{.port = "hits", .access = Access::Copy, .write = true}},
@@ -49,9 +51,13 @@ Declaration ReferenceRayQuery::declare(const World&, const Inputs& inputs, const
     return declaration;
 }
 
-void ReferenceRayQuery::build(Commands& commands) {
+void ReferenceRayQuery::buildHierarchy(Commands& commands) {
     constexpr Causes scene = Causes::Geometry | Causes::Transforms | Causes::Materials;
-    if (!tracer_ || any(commands.causes() & scene)) tracer_.emplace(commands.geometry(), commands.scene());
+    if (!tracer_ || built_ != build || any(commands.causes() & scene)) {
+        tracer_.emplace(commands.geometry(), commands.scene(), true, build);
+        built_ = build;
+    }
+    commands.report("build of the hierarchy alone, ms", tracer_->buildMs());
 }
 
 void ReferenceRayQuery::take(Commands& commands) {

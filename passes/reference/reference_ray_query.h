@@ -21,17 +21,19 @@ public:
                                       const Demand& demand) const override;
 
     Query query = Query::Any;
+    BuildQuality build = BuildQuality::Medium;
     int threads = 2;
 
 private:
-    void build(Commands& commands);
+    void buildHierarchy(Commands& commands);
     void take(Commands& commands);
     void trace(Commands& commands);
     void give(Commands& commands);
 
     std::optional<ReferenceTracer> tracer_;
-    std::vector<TraceRay> rays_;         // that exist
-    std::vector<std::uint32_t> records_; // which record each of them is
+    BuildQuality built_ = BuildQuality::Medium; // of it
+    std::vector<TraceRay> rays_;                // that exist
+    std::vector<std::uint32_t> records_;        // which record each of them is
     std::vector<std::uint8_t> any_;
     std::vector<TraceHit> closest_;
     std::vector<shared::HitRecord> hits_;

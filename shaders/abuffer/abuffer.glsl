@@ -153,8 +153,25 @@ uint M(inPixel)(int pixel, float low, float high, bool away) {
     float zMin = uintBitsToFloat(imageLoad(M(pixels), words).r);
     float zMax = uintBitsToFloat(imageLoad(M(pixels), words + 1).r);
 #ifdef SKIPPING
+#ifdef SHIFTED
+    // Boundaries lie where the buckets begin, one after the other: a bucket ends at the next one's first depth at
+    // the latest.
+    int from = 0;
+    int to = BUCKETS - 1;
+    for (int bucket = 1; bucket <= to; ++bucket) {
+        ITERATION;
+        uint head = imageLoad(M(pixels), words + HEAD_WORD(bucket)).r;
+        float z = head != 0u ? M(depthOf)(head) : 0.0;
+        if (head == 0u || z >= high) {
+            to = bucket - 1;
+        } else if (z < low) {
+            from = bucket;
+        }
+    }
+#else
     int from = int(abufferBucket(low, zMin, zMax, uint(BUCKETS)));
     int to = int(abufferBucket(high, zMin, zMax, uint(BUCKETS)));
+#endif
 #else
     int from = 0;
     int to = BUCKETS - 1;

@@ -2,6 +2,7 @@
 // view's axis. BY_RAYS, in the frame's view: as the ray through the pixel's middle meets the triangle, for which
 // abuffer/by_rays.geom offers fragments; elsewhere as the rasterizer finds it.
 #include "lib/fragment.glsl"
+#include "abuffer/seen.glsl"
 
 #if defined(BY_RAYS) && !defined(CUBE)
 #include "lib/view.glsl"
@@ -21,16 +22,12 @@ bool abufferFragment(uint triangle, out float depth) {
     return met && sceneCovers(triangle, vec2(hit.u, hit.v));
 }
 #else
-in vec3 v_position;
-in vec2 v_tex_coord;
-in vec2 v_tex_coord1;
-in float v_alpha;
-in float v_depth;
+in SEEN seen;
 
 bool abufferFragment(uint triangle, out float depth) {
-    depth = v_depth;
+    depth = seen.depth;
 #ifdef MATERIAL_MASKED
-    return materialCovers(sceneTriangle(triangle).w, v_tex_coord, v_tex_coord1, v_alpha);
+    return materialCovers(sceneTriangle(triangle).w, seen.texCoord, seen.texCoord1, seen.alpha);
 #else
     return true;
 #endif

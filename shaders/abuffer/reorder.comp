@@ -1,6 +1,6 @@
 // Sorts the lists of the pixels by depth, fragments at one depth by their triangle, so that the result depends on no
-// order of arrival, and sets the links, heads and tails that the structure has (section 3.3, reorder stage). An item is
-// a pixel, or with COUNTER and buckets a list of a pixel.
+// order of arrival, and sets the links, heads and tails that the structure has (section 3.3, reorder stage). An item
+// is a pixel, or with COUNTER and buckets, whose boundaries were known to the store stage, a list of a pixel.
 //
 // Up to SHORT fragments are sorted by insertion while they are read. Up to MEDIUM are merged in place, from runs of one
 // node on; those of SB, which has no links, are sorted by Shell's method. Longer lists, up to LONGEST, would take an
@@ -13,9 +13,13 @@
 
 layout(local_size_x = 64) in;
 
+#if defined(COUNTER) && defined(BUCKETED) && !defined(SHIFTED)
+#define ITEM_IS_BUCKET
+#endif
+
 layout(r32ui) uniform uimageBuffer pixels;
 layout(r32ui) uniform uimageBuffer nodes;
-#ifdef DECOUPLED
+#if defined(DECOUPLED) && !defined(NO_TRIANGLES)
 layout(r32ui) uniform readonly uimageBuffer data;
 #endif
 #ifndef COUNTER
@@ -32,7 +36,9 @@ layout(std430) buffer LongLists {
 float depthOf(uint node) { return uintBitsToFloat(imageLoad(nodes, NODE_AT(node, 0)).r); }
 
 uint triangleOf(uint node) {
-#ifdef DECOUPLED
+#ifdef NO_TRIANGLES
+    return 0u;
+#elif defined(DECOUPLED)
 #ifdef SB
     return imageLoad(data, int(imageLoad(nodes, NODE_AT(node, 1)).r) - 1).r;
 #else
@@ -193,23 +199,30 @@ uint mergeRuns(uint list, uint width) {
 // ---- what comes out: links, heads and tails
 
 int words; // of the pixel
-vec2 range = vec2(0.0);
+vec2 range = vec2(0.0); // of its depths: known once they are sorted, where no bucket was chosen before
 uint last = 0u;
 uint lastBucket = 0u;
-uint ownBucket = 0u; // with COUNTER
+uint ownBucket = 0u; // with ITEM_IS_BUCKET
+uint emitted = 0u;
+uint itemCount = 0u; // with SHIFTED
 
 // The bucket whose head holds the list that is not sorted yet.
 uint headBucket() { return ownBucket; }
 
 void beginItem(int item) {
-#if defined(COUNTER) && defined(BUCKETED)
+#ifdef ITEM_IS_BUCKET
     ownBucket = uint(item % BUCKETS);
     words = item / BUCKETS * PIXEL_WORDS;
 #else
     words = item * PIXEL_WORDS;
-#ifdef BUCKETED
-    range = vec2(uintBitsToFloat(imageLoad(pixels, words).r), uintBitsToFloat(imageLoad(pixels, words + 1).r));
 #endif
+}
+
+void setRange(float least, float most) {
+#if defined(BUCKETED) && !defined(COUNTER)
+    range = vec2(least, most);
+    imageStore(pixels, words, uvec4(floatBitsToUint(least)));
+    imageStore(pixels, words + 1, uvec4(floatBitsToUint(most)));
 #endif
 }
 
@@ -224,8 +237,10 @@ void finish() {
 void emit(uint node, float z) {
 #ifndef BUCKETED
     uint bucket = 0u;
-#elif defined(COUNTER)
+#elif defined(ITEM_IS_BUCKET)
     uint bucket = ownBucket;
+#elif defined(SHIFTED)
+    uint bucket = abufferShiftedBucket(emitted++, itemCount, uint(BUCKETS));
 #else
     uint bucket = abufferBucket(z, range.x, range.y, uint(BUCKETS));
 #endif
@@ -246,6 +261,16 @@ void emit(uint node, float z) {
 
 // Sets what the links of a sorted list are.
 void link(uint list) {
+#if defined(BUCKETED) && !defined(ITEM_IS_BUCKET)
+    itemCount = 0u;
+    uint final = list;
+    for (uint node = list; node != 0u; node = nextOf(node)) {
+        ITERATION;
+        ++itemCount;
+        final = node;
+    }
+    setRange(depthOf(list), depthOf(final));
+#endif
     for (uint node = list; node != 0u;) {
         ITERATION;
         uint following = nextOf(node);
@@ -303,6 +328,8 @@ void main() {
     list = count > 0 ? first : 0u;
 #endif
     if (count <= SHORT) {
+        itemCount = uint(count);
+        if (count > 0) setRange(shortZ[0], shortZ[count - 1]);
         for (int i = 0; i < count; ++i) {
             ITERATION;
             emit(shortNode[i], shortZ[i]);

@@ -1,32 +1,40 @@
-// The scene's triangles in one view of the A-buffer: the frame's, or with CUBE a face of the cube, whose eye stands the
-// near distance behind the frame's, so that the six faces leave no gap about the eye (section 3.2).
+// The scene's triangles in a view of the A-buffer: in VIEW, or each instance in another one (SEVERAL_VIEWS). With
+// GEOMETRY_SHADER the stage after this one puts them into the views, and gl_Position holds the place in render space.
+#ifdef VERTEX_LAYER
+#extension GL_ARB_shader_viewport_layer_array : require
+#endif
 #include "lib/vertex.glsl"
-#include "shared/abuffer.h"
-#include "shared/view.h"
+#include "abuffer/views.glsl"
+#include "abuffer/seen.glsl"
 
-layout(std140) uniform VIEW_BLOCK { ViewData frameView; };
 #ifdef CUBE
 uniform uint face;
 #endif
 
-out vec3 v_position;
-out vec2 v_tex_coord;
-out vec2 v_tex_coord1;
-out float v_alpha;
-out float v_depth; // along the view's axis, scene units
+out SEEN seen;
 
 void main() {
-    v_position = in_position;
-    v_tex_coord = in_tex_coord;
-    v_tex_coord1 = in_tex_coord1;
-    v_alpha = in_colour.a;
-#ifdef CUBE
-    vec3 seen = abufferFaceAxes(face, in_position - frameView.position.xyz);
-    v_depth = seen.z + NEAR_PLANE;
-    // Reversed depth without a far plane: the near plane is where seen.z is 0.
-    gl_Position = vec4(seen.xy, NEAR_PLANE, v_depth);
+#ifdef MATERIAL_MASKED
+    seen.texCoord = in_tex_coord;
+    seen.texCoord1 = in_tex_coord1;
+    seen.alpha = in_colour.a;
+#endif
+#ifdef GEOMETRY_SHADER
+    seen.depth = 0.0;
+    seen.view = 0u;
+    gl_Position = vec4(in_position, 1.0);
 #else
-    v_depth = -(frameView.view * vec4(in_position, 1.0)).z;
-    gl_Position = frameView.viewProjection * vec4(in_position, 1.0);
+#ifdef VERTEX_LAYER
+    uint view = uint(FIRST_VIEW + gl_InstanceID);
+    seen.view = view;
+#ifdef LAYERED
+    gl_Layer = int(view) - 1;
+#else
+    gl_ViewportIndex = view == 0u ? 0 : 1;
+#endif
+#else
+    uint view = VIEW;
+#endif
+    gl_Position = seenFrom(view, in_position, seen.depth);
 #endif
 }

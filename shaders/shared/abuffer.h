@@ -35,4 +35,10 @@ inline uint abufferBucket(float z, float zMin, float zMax, uint buckets) {
     return uint(clamp(at, 0.0f, float(buckets - 1u))); // clamped before: what is out of a whole number's range has no value
 }
 
+// Shifted boundaries: the buckets of `count` fragments, in order of depth, hold equally many but for one; which of them holds
+// fragment `index`. Of fewer fragments than buckets each has its own, and the last buckets none.
+inline uint abufferShiftedBucket(uint index, uint count, uint buckets) {
+    return count <= buckets ? index : index * buckets / count;
+}
+
 SHARED_END

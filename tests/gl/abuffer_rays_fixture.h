@@ -20,7 +20,7 @@ struct ABufferRays : TracedTest {
             "edges": [["bounds.bounds", "store.bounds"], ["bounds.cube_bounds", "store.cube_bounds"],
                 ["store.pixels", "reorder.stored_pixels"], ["store.nodes", "reorder.stored_nodes"],
                 ["store.data", "reorder.data"], ["store.segments", "reorder.segments"],
-                ["reorder.pixels", "abuffer.pixels"], ["reorder.nodes", "abuffer.nodes"], ["store.data", "abuffer.data"],
+                ["reorder.pixels", "abuffer.pixels"], ["reorder.nodes", "abuffer.nodes"], ["reorder.triangles", "abuffer.data"],
                 ["gbuffer.depth", "hemisphere.depth"], ["gbuffer.normal", "hemisphere.normal"],
                 ["gbuffer.face_normal", "hemisphere.face_normal"],
                 ["abuffer.tracer", "query.tracer"], ["bvh.tracer", "exact.tracer"]],

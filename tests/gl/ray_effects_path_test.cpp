@@ -32,7 +32,7 @@ Graph pathGraph(const std::vector<PortRef>& outputs, const std::vector<std::stri
             ["depth_bounds.bounds", "store.bounds"], ["depth_bounds.cube_bounds", "store.cube_bounds"],
             ["store.pixels", "reorder.stored_pixels"], ["store.nodes", "reorder.stored_nodes"],
             ["store.data", "reorder.data"], ["store.segments", "reorder.segments"],
-            ["reorder.pixels", "abuffer.pixels"], ["reorder.nodes", "abuffer.nodes"], ["store.data", "abuffer.data"],
+            ["reorder.pixels", "abuffer.pixels"], ["reorder.nodes", "abuffer.nodes"], ["reorder.triangles", "abuffer.data"],
             ["gbuffer.depth", "direct.depth"], ["gbuffer.normal", "direct.normal"],
             ["direct.radiance", "light.first"], ["sky.radiance", "light.second"],
             ["gbuffer.depth", "path.depth"], ["gbuffer.normal", "path.normal"],

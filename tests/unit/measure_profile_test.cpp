@@ -50,6 +50,7 @@ TEST(RunStats, JsonHasTheKeysThatScriptsRelyOn) {
     stats.passes.push_back({"ao", "RayAmbientOcclusion", 2, {4.5, 4, 5}});
     stats.leftOut.push_back({"bvh", "nobody reads 'bvh.tracer'"});
     stats.memory = {1, 2, 3};
+    stats.resources = {{"store.nodes", 1200}};
     const auto json = nlohmann::json::parse(statsJson(stats));
     for (const char* key : {"graph", "scene", "size", "frames", "seed", "renderer", "driver", "clock", "spin",
                             "passes", "frame_ms", "left_out", "memory"})
@@ -59,6 +60,7 @@ TEST(RunStats, JsonHasTheKeysThatScriptsRelyOn) {
     EXPECT_EQ(json["passes"][0]["runs"], 2);
     EXPECT_EQ(json["left_out"][0]["why"], "nobody reads 'bvh.tracer'");
     EXPECT_EQ(json["memory"]["unshared"], 2);
+    EXPECT_EQ(json["resources"], nlohmann::json::parse(R"([{"port": "store.nodes", "bytes": 1200}])"));
 }
 
 TEST(BytesText, GoesOverToTheNextUnitAt1024) {

@@ -133,7 +133,8 @@ private:
 World worldOf(const SceneFacts& facts) {
     World world;
     world.facts = facts;
-    world.capabilities.extensions = {"GL_ARB_fragment_shader_interlock", "GL_EXT_shader_framebuffer_fetch"};
+    world.capabilities.extensions = {"GL_ARB_fragment_shader_interlock", "GL_EXT_shader_framebuffer_fetch",
+                                     "GL_ARB_shader_viewport_layer_array"};
     world.capabilities.maxTextureBufferTexels = std::int64_t{1} << 27;
     return world;
 }
