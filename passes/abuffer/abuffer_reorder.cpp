@@ -30,11 +30,11 @@ Declaration ABufferReorder::declare(const World& world, const Inputs& inputs, co
     const FragmentLists& lists = stored.lists;
     const bool bucketed = lists.buckets > 1 || lists.structure == FragmentLists::Structure::LLB ||
                           lists.structure == FragmentLists::Structure::DLLB;
-    const bool counted = !inputs["segments"].constant;
+    const std::uint64_t listed = abufferPixels(lists, world.size);
+    const bool counted = listed > 0 && inputs["segments"].desc.bytes >= 8 * listed;
     Output pixels{.port = "pixels", .desc = inputs["stored_pixels"].desc, .updates = "stored_pixels"};
     if (counted) {
-        const std::uint64_t words =
-            abufferPixels(lists, world.size) * static_cast<std::uint64_t>(abufferPixelWords(lists));
+        const std::uint64_t words = listed * static_cast<std::uint64_t>(abufferPixelWords(lists));
         pixels.desc.bytes = 4 * words;
         pixels.updates.clear();
         pixels.clear = glm::vec4(0);
