@@ -31,6 +31,9 @@ std::vector<std::string> settingsOf(const GraphPass& pass, const PropertyInfo& p
     return settings;
 }
 
+// Of a table with more combinations than this every two settings are seen together, not all of them.
+constexpr size_t mostCombinations = 100;
+
 // All combinations of the settings of one pass.
 std::vector<std::vector<std::string>> combinations(const GraphPass& pass) {
     std::vector<std::vector<std::string>> all = {{}};
@@ -45,7 +48,15 @@ std::vector<std::vector<std::string>> combinations(const GraphPass& pass) {
             }
         all = std::move(more);
     }
-    return all;
+    if (all.size() <= mostCombinations) return all;
+    std::vector<std::vector<std::string>> pairs;
+    const auto& properties = shipped().find(pass.type)->properties;
+    for (size_t i = 0; i < properties.size(); ++i)
+        for (size_t k = i + 1; k < properties.size(); ++k)
+            for (const std::string& one : settingsOf(pass, properties[i]))
+                for (const std::string& other : settingsOf(pass, properties[k]))
+                    pairs.push_back({one, other});
+    return pairs;
 }
 
 // Little of what shaders have parts for.
