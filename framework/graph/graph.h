@@ -24,7 +24,11 @@ std::optional<PortRef> parsePortRef(std::string_view text);
 struct GraphPass {
     std::string name, type;
     std::vector<std::pair<std::string, Value>> properties; // those that the file gives, in its order
-    std::optional<glm::dvec2> position;                    // on the editor's canvas
+    // Properties that follow a variable of the graph: property -> variable. Their values above are the
+    // variable's.
+    std::map<std::string, std::string> bound;
+    bool muted = false; // does nothing: each output is the first connected input that can stand for it
+    std::optional<glm::dvec2> position; // on the editor's canvas
     std::string comment;
     Location where;
     std::map<std::string, Location> propertyWhere;
@@ -34,6 +38,27 @@ struct GraphEdge {
     PortRef from, to; // an output, an input
     Location where;
     Location fromWhere = {}, toWhere = {};
+    std::vector<glm::dvec2> bends = {}; // on the editor's canvas, from the output on
+};
+
+// A named value that properties of several passes follow.
+struct GraphVariable {
+    std::string name;
+    Value value;
+    Location where;
+};
+
+// A box on the editor's canvas that carries passes along.
+struct GraphFrame {
+    std::string title;
+    std::vector<std::string> passes;
+    Location where;
+};
+
+// A remark on the editor's canvas.
+struct GraphNote {
+    std::string text;
+    glm::dvec2 position;
 };
 
 struct GraphOutput {
@@ -46,18 +71,25 @@ struct Graph {
     // "builtin:NAME" or a file, relative to the folder of `file`; empty: the file names none.
     std::string sceneSource;
     SceneSetup sceneSetup; // what the file chooses of the scene and adds to it
+    std::vector<GraphVariable> variables;
     std::vector<GraphPass> passes;
     std::vector<GraphEdge> edges;
     std::vector<GraphOutput> outputs;
+    std::vector<GraphFrame> frames;
+    std::vector<GraphNote> notes;
     std::filesystem::path file; // where it was loaded from; a relative scene is relative to its folder
 
     [[nodiscard]] const GraphPass* find(std::string_view pass) const;
     [[nodiscard]] GraphPass* find(std::string_view pass);
+    [[nodiscard]] const GraphVariable* variable(std::string_view variableName) const;
+    // Gives a variable that stands there, and every property that follows it, this value.
+    void setVariable(std::string_view variableName, const Value& value);
 };
 
 // A graph file may have at most so many of each; a text (comment, property) at most so many bytes.
 inline constexpr size_t maxGraphPasses = 10'000, maxGraphEdges = 100'000, maxGraphOutputs = 10'000,
-                        maxGraphText = 65'536;
+                        maxGraphVariables = 10'000, maxGraphFrames = 10'000, maxGraphNotes = 10'000,
+                        maxEdgeBends = 1'000, maxGraphText = 65'536;
 
 // Reads the JSON form ("kestrel": 1). Throws InputError with every mistake of form (unknown key, wrong kind,
 // missing key), each with file:line:column. Names are not resolved here (see validate).
@@ -73,8 +105,9 @@ std::string saveGraph(const Graph& graph);
 // outputs that are none. Errors come in the order of the file. Empty: valid.
 std::vector<Problem> validate(const Graph& graph, const Registry& registry);
 
-// `--set` in its two forms: "pass.property=value" sets a property, "pass.input=pass.output" moves (or adds)
-// an edge, "pass.input=" removes it. Throws InputError naming what is unknown with its near name.
+// `--set` in its forms: "pass.property=value" sets a property (which follows no variable any more),
+// "variable=value" a variable with all that follows it, "pass.input=pass.output" moves (or adds) an edge,
+// "pass.input=" removes it. Throws InputError naming what is unknown with its near name.
 void applySetting(Graph& graph, const Registry& registry, const std::string& setting);
 
 // JSON schema (draft 2020-12) of graph files, generated from the registry's tables.

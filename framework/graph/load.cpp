@@ -26,6 +26,9 @@ public:
         graph.name = text(fields.optional("name", Kind::String));
         graph.comment = text(fields.optional("comment", Kind::String));
         if (const Json* scene = fields.optional("scene")) readScene(*scene, graph);
+        // Before the passes, whose properties name them.
+        if (const Json* variables = fields.optional("variables", Kind::Object))
+            readVariables(*variables, graph);
         if (const Json* passes = fields.required("passes", Kind::Object)) readPasses(*passes, graph);
         if (const Json* edges = list(fields.optional("edges", Kind::Array), "edges", maxGraphEdges))
             for (const Json& edge : edges->items) readEdge(edge, graph);
@@ -33,6 +36,10 @@ public:
             for (const Json& output : outputs->items)
                 if (const auto port = portRef(output, "an output"))
                     graph.outputs.push_back({*port, output.where});
+        if (const Json* frames = list(fields.optional("frames", Kind::Array), "frames", maxGraphFrames))
+            for (const Json& frame : frames->items) readFrame(frame, graph);
+        if (const Json* notes = list(fields.optional("notes", Kind::Array), "notes", maxGraphNotes))
+            for (const Json& remark : notes->items) readNote(remark, graph);
         fields.refuseOthers();
         return graph;
     }
@@ -64,6 +71,72 @@ private:
         fields.refuseOthers();
     }
 
+    void readVariables(const Json& variables, Graph& graph) {
+        if (variables.members.size() > maxGraphVariables) {
+            note(variables.where, fmt::format("{} variables; at most {} are read", variables.members.size(),
+                                              maxGraphVariables));
+            return;
+        }
+        for (const Json::Member& member : variables.members) {
+            GraphVariable variable{.name = member.key, .value = {}, .where = member.where};
+            if (!isGraphName(member.key))
+                note(member.where,
+                     fmt::format("the variable name '{}' must be like that of a pass: lower_case "
+                                 "letters, digits and single underscores",
+                                 member.key));
+            if (auto value = readValue(member.value, fmt::format("variable '{}'", member.key))) {
+                variable.value = std::move(*value);
+                graph.variables.push_back(std::move(variable));
+            }
+        }
+    }
+
+    // A point of the canvas; notes what else stands there.
+    std::optional<glm::dvec2> readPoint(const Json& json, const std::string& what) {
+        if (json.kind == Kind::Array && json.items.size() == 2 && json.items[0].isNumber() &&
+            json.items[1].isNumber())
+            return glm::dvec2(json.items[0].number, json.items[1].number);
+        note(json.where, fmt::format("{} must be an array of two numbers", what));
+        return {};
+    }
+
+    void readFrame(const Json& frame, Graph& graph) {
+        JsonFields fields(frame, "a frame", problems_);
+        if (frame.kind != Kind::Object) return;
+        GraphFrame made{
+            .title = text(fields.required("title", Kind::String)), .passes = {}, .where = frame.where};
+        if (const Json* passes =
+                list(fields.required("passes", Kind::Array), "passes of a frame", maxGraphPasses))
+            for (const Json& pass : passes->items) {
+                if (pass.kind != Kind::String)
+                    note(pass.where,
+                         fmt::format("a pass of a frame must be a string, not {}", pass.kindName()));
+                else if (graph.find(pass.text) == nullptr)
+                    note(pass.where, fmt::format("there is no pass '{}' (in frame '{}'){}", pass.text,
+                                                 made.title, didYouMean(pass.text, passNames(graph))));
+                else
+                    made.passes.push_back(pass.text);
+            }
+        fields.refuseOthers();
+        graph.frames.push_back(std::move(made));
+    }
+
+    static std::vector<std::string> passNames(const Graph& graph) {
+        std::vector<std::string> names;
+        for (const GraphPass& pass : graph.passes) names.push_back(pass.name);
+        return names;
+    }
+
+    void readNote(const Json& json, Graph& graph) {
+        JsonFields fields(json, "a note", problems_);
+        if (json.kind != Kind::Object) return;
+        GraphNote made{.text = text(fields.required("text", Kind::String)), .position = {}};
+        if (const Json* position = fields.required("position", Kind::Array))
+            if (const auto point = readPoint(*position, "'position' of a note")) made.position = *point;
+        fields.refuseOthers();
+        graph.notes.push_back(std::move(made));
+    }
+
     void readPasses(const Json& passes, Graph& graph) {
         if (passes.members.size() > maxGraphPasses) {
             note(passes.where,
@@ -81,58 +154,82 @@ private:
         if (member.value.kind != Kind::Object) return;
         pass.type = text(fields.required("type", Kind::String));
         if (const Json* properties = fields.optional("properties", Kind::Object))
-            for (const Json::Member& property : properties->members) readProperty(property, pass);
-        if (const Json* position = fields.optional("position", Kind::Array)) {
-            if (position->items.size() == 2 && position->items[0].isNumber() && position->items[1].isNumber())
-                pass.position = glm::dvec2(position->items[0].number, position->items[1].number);
-            else
-                note(position->where,
-                     fmt::format("'position' of pass '{}' must be an array of two numbers", pass.name));
-        }
+            for (const Json::Member& property : properties->members) readProperty(property, pass, graph);
+        if (const Json* muted = fields.optional("muted", Kind::Bool)) pass.muted = muted->boolean;
+        if (const Json* position = fields.optional("position", Kind::Array))
+            pass.position = readPoint(*position, fmt::format("'position' of pass '{}'", pass.name));
         pass.comment = text(fields.optional("comment", Kind::String));
         fields.refuseOthers();
         graph.passes.push_back(std::move(pass));
     }
 
-    void readProperty(const Json::Member& property, GraphPass& pass) {
-        const Json& json = property.value;
+    void readProperty(const Json::Member& property, GraphPass& pass, const Graph& graph) {
+        const std::string what = fmt::format("property '{}' of pass '{}'", property.key, pass.name);
+        pass.propertyWhere[property.key] = property.where;
+        if (property.value.kind == Kind::Object) {
+            followVariable(property, what, pass, graph);
+        } else if (auto value = readValue(property.value, what)) {
+            pass.properties.emplace_back(property.key, std::move(*value));
+        }
+    }
+
+    // { "variable": "NAME" } in the place of a value.
+    void followVariable(const Json::Member& property, const std::string& what, GraphPass& pass,
+                        const Graph& graph) {
+        JsonFields fields(property.value, what, problems_);
+        const Json* name = fields.required("variable", Kind::String);
+        fields.refuseOthers();
+        if (name == nullptr) return;
+        if (const GraphVariable* variable = graph.variable(name->text)) {
+            pass.properties.emplace_back(property.key, variable->value);
+            pass.bound[property.key] = variable->name;
+            return;
+        }
+        std::vector<std::string> names;
+        for (const GraphVariable& candidate : graph.variables) names.push_back(candidate.name);
+        note(name->where, fmt::format("{} follows the variable '{}', which the graph has not{}", what,
+                                      text(name), didYouMean(name->text, names)));
+    }
+
+    std::optional<Value> readValue(const Json& json, const std::string& what) {
         const bool numbers = json.kind == Kind::Array && !json.items.empty() && json.items.size() <= 4 &&
                              std::all_of(json.items.begin(), json.items.end(),
                                          [](const Json& item) { return item.isNumber(); });
-        Value value;
-        if (json.kind == Kind::Bool)
-            value = json.boolean;
-        else if (json.kind == Kind::Int)
-            value = json.integer;
-        else if (json.kind == Kind::Float)
-            value = json.number;
-        else if (json.kind == Kind::String)
-            value = text(&json);
-        else if (numbers) {
+        if (json.kind == Kind::Bool) return json.boolean;
+        if (json.kind == Kind::Int) return json.integer;
+        if (json.kind == Kind::Float) return json.number;
+        if (json.kind == Kind::String) return text(&json);
+        if (numbers) {
             std::vector<double> vector;
             for (const Json& item : json.items) vector.push_back(item.number);
-            value = std::move(vector);
-        } else {
-            note(json.where,
-                 fmt::format("property '{}' of pass '{}' must be true or false, a number, a string or an "
-                             "array of up to 4 numbers, not {}",
-                             property.key, pass.name,
-                             json.kind == Kind::Array ? "another array" : json.kindName()));
-            return;
+            return vector;
         }
-        pass.properties.emplace_back(property.key, std::move(value));
-        pass.propertyWhere[property.key] = property.where;
+        note(json.where, fmt::format("{} must be true or false, a number, a string or an array of up to 4 "
+                                     "numbers, not {}",
+                                     what, json.kind == Kind::Array ? "another array" : json.kindName()));
+        return {};
     }
 
     void readEdge(const Json& edge, Graph& graph) {
-        if (edge.kind != Kind::Array || edge.items.size() != 2) {
-            note(edge.where, "an edge must be an array of two strings, [\"pass.output\", \"pass.input\"]");
+        if (edge.kind != Kind::Array || (edge.items.size() != 2 && edge.items.size() != 3)) {
+            note(edge.where,
+                 "an edge must be an array of two strings, [\"pass.output\", \"pass.input\"], and "
+                 "where it bends on the canvas a list of points");
             return;
         }
         const auto from = portRef(edge.items[0], "the begin of an edge");
         const auto to = portRef(edge.items[1], "the end of an edge");
+        std::vector<glm::dvec2> bends;
+        if (edge.items.size() == 3) {
+            if (edge.items[2].kind != Kind::Array)
+                note(edge.items[2].where, "the bends of an edge must be an array of points");
+            else if (const Json* points = list(&edge.items[2], "bends of an edge", maxEdgeBends))
+                for (const Json& point : points->items)
+                    if (const auto read = readPoint(point, "a bend of an edge")) bends.push_back(*read);
+        }
         if (from && to)
-            graph.edges.push_back({*from, *to, edge.where, edge.items[0].where, edge.items[1].where});
+            graph.edges.push_back(
+                {*from, *to, edge.where, edge.items[0].where, edge.items[1].where, std::move(bends)});
     }
 
     std::optional<PortRef> portRef(const Json& json, const char* what) {
@@ -176,6 +273,23 @@ const GraphPass* Graph::find(std::string_view pass) const {
     const auto found = std::find_if(passes.begin(), passes.end(),
                                     [&](const GraphPass& candidate) { return candidate.name == pass; });
     return found == passes.end() ? nullptr : &*found;
+}
+
+const GraphVariable* Graph::variable(std::string_view variableName) const {
+    const auto found = std::find_if(variables.begin(), variables.end(), [&](const GraphVariable& candidate) {
+        return candidate.name == variableName;
+    });
+    return found == variables.end() ? nullptr : &*found;
+}
+
+void Graph::setVariable(std::string_view variableName, const Value& value) {
+    for (GraphVariable& variable : variables)
+        if (variable.name == variableName) variable.value = value;
+    for (GraphPass& pass : passes)
+        for (auto& [name, held] : pass.properties)
+            if (const auto follows = pass.bound.find(name);
+                follows != pass.bound.end() && follows->second == variableName)
+                held = value;
 }
 
 GraphPass* Graph::find(std::string_view pass) {

@@ -116,7 +116,7 @@ Out valueSchema(const PropertyInfo& property) {
 Out propertiesSchema(const PassType& type) {
     Out properties = Out::object();
     for (const PropertyInfo& property : type.properties) {
-        Out schema = valueSchema(property);
+        Out schema = {{"anyOf", {valueSchema(property), {{"$ref", "#/$defs/follows"}}}}};
         schema["description"] =
             property.unit.empty() ? property.description : property.description + " (" + property.unit + ")";
         schema["default"] = defaultOf(property);
@@ -140,8 +140,8 @@ Out passSchema(const Registry& registry) {
                 {"properties",
                  {{"type", {{"enum", registry.names()}}},
                   {"properties", {{"type", "object"}}},
-                  {"position",
-                   {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}}},
+                  {"muted", {{"type", "boolean"}}},
+                  {"position", {{"$ref", "#/$defs/point"}}},
                   {"comment", {{"type", "string"}}}}},
                 {"additionalProperties", false}};
     if (!choices.empty()) json["allOf"] = std::move(choices);
@@ -203,8 +203,16 @@ std::string graphSchema(const Registry& registry) {
     Out definitions = Out::object();
     definitions["pass"] = passSchema(registry);
     definitions["port"] = port;
+    definitions["point"] = {
+        {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+    definitions["follows"] = {{"type", "object"},
+                              {"description", "The value of a variable of the graph"},
+                              {"properties", {{"variable", {{"type", "string"}}}}},
+                              {"required", {"variable"}},
+                              {"additionalProperties", false}};
     for (const PassType& type : registry.types()) definitions[type.name] = propertiesSchema(type);
     const Out text = {{"type", "string"}};
+    const Out points = {{"type", "array"}, {"items", {{"$ref", "#/$defs/point"}}}};
     Out json;
     json["$schema"] = "https://json-schema.org/draft/2020-12/schema";
     json["title"] = "A Kestrel graph";
@@ -215,6 +223,10 @@ std::string graphSchema(const Registry& registry) {
         {"name", text},
         {"comment", text},
         {"scene", sceneSchema()},
+        {"variables",
+         {{"type", "object"},
+          {"propertyNames", {{"pattern", "^[a-z][a-z0-9_]*$"}}},
+          {"additionalProperties", {{"type", {"boolean", "number", "string", "array"}}}}}},
         {"passes",
          {{"type", "object"},
           {"propertyNames", {{"pattern", "^[a-z][a-z0-9_]*$"}}},
@@ -222,8 +234,25 @@ std::string graphSchema(const Registry& registry) {
         {"edges",
          {{"type", "array"},
           {"items",
-           {{"type", "array"}, {"items", {{"$ref", "#/$defs/port"}}}, {"minItems", 2}, {"maxItems", 2}}}}},
-        {"outputs", {{"type", "array"}, {"items", {{"$ref", "#/$defs/port"}}}}}};
+           {{"type", "array"},
+            {"prefixItems", {{{"$ref", "#/$defs/port"}}, {{"$ref", "#/$defs/port"}}, points}},
+            {"minItems", 2},
+            {"maxItems", 3}}}}},
+        {"outputs", {{"type", "array"}, {"items", {{"$ref", "#/$defs/port"}}}}},
+        {"frames",
+         {{"type", "array"},
+          {"items",
+           {{"type", "object"},
+            {"properties", {{"title", text}, {"passes", {{"type", "array"}, {"items", text}}}}},
+            {"required", {"title", "passes"}},
+            {"additionalProperties", false}}}}},
+        {"notes",
+         {{"type", "array"},
+          {"items",
+           {{"type", "object"},
+            {"properties", {{"text", text}, {"position", {{"$ref", "#/$defs/point"}}}}},
+            {"required", {"text", "position"}},
+            {"additionalProperties", false}}}}}};
     json["additionalProperties"] = false;
     json["$defs"] = std::move(definitions);
     return json.dump(2) + "\n";

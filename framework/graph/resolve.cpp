@@ -1,5 +1,6 @@
 // Compiler stage: names become nodes and ports.
 #include "core/check.h"
+#include "graph/muted.h"
 #include "graph/network.h"
 #include <fmt/format.h>
 #include <queue>
@@ -83,7 +84,7 @@ Network resolve(const Graph& graph, const Registry& registry, const PassSet& pas
         node.type = registry.find(pass.type);
         const auto instance = passes.find(pass.name);
         KESTREL_CHECK(instance != passes.end() && instance->second != nullptr);
-        node.instance = instance->second;
+        node.instance = pass.muted ? mutedPass(*node.type) : instance->second;
         if (const auto grown = options.grown.find(pass.name); grown != options.grown.end())
             node.grown = &grown->second;
         index[pass.name] = static_cast<int>(network.nodes.size());

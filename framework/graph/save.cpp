@@ -29,16 +29,42 @@ std::string arrayInLines(const std::vector<std::string>& items) {
     return fmt::format("[\n    {}\n  ]", fmt::join(items, ",\n    "));
 }
 
+std::string pointText(const glm::dvec2& point) {
+    return jsonText(Value(std::vector<double>{point.x, point.y}));
+}
+
 std::string passText(const GraphPass& pass) {
     Members members;
     members.add("type", jsonText(pass.type));
     Members properties;
-    for (const auto& [name, value] : pass.properties) properties.add(name, jsonText(value));
+    for (const auto& [name, value] : pass.properties) {
+        const auto follows = pass.bound.find(name);
+        properties.add(name, follows == pass.bound.end()
+                                 ? jsonText(value)
+                                 : fmt::format("{{ \"variable\": {} }}", jsonText(follows->second)));
+    }
     if (!properties.empty()) members.add("properties", properties.inOneLine());
-    if (pass.position)
-        members.add("position", jsonText(Value(std::vector<double>{pass.position->x, pass.position->y})));
+    if (pass.muted) members.add("muted", "true");
+    if (pass.position) members.add("position", pointText(*pass.position));
     if (!pass.comment.empty()) members.add("comment", jsonText(pass.comment));
     return members.inOneLine();
+}
+
+std::string edgeText(const GraphEdge& edge) {
+    std::string text = fmt::format("[{}, {}", jsonText(edge.from.text()), jsonText(edge.to.text()));
+    if (!edge.bends.empty()) {
+        std::vector<std::string> points;
+        for (const glm::dvec2& point : edge.bends) points.push_back(pointText(point));
+        text += fmt::format(", [{}]", fmt::join(points, ", "));
+    }
+    return text + "]";
+}
+
+std::string frameText(const GraphFrame& frame) {
+    std::vector<std::string> passes;
+    for (const std::string& pass : frame.passes) passes.push_back(jsonText(pass));
+    return fmt::format("{{ \"title\": {}, \"passes\": [{}] }}", jsonText(frame.title),
+                       fmt::join(passes, ", "));
 }
 
 } // namespace
@@ -53,18 +79,30 @@ std::string saveGraph(const Graph& graph) {
     for (const auto& [key, value] : sceneSetupKeys().members(graph.sceneSetup)) scene.add(key, value);
     if (!scene.empty()) root.add("scene", scene.inOneLine());
 
+    Members variables;
+    for (const GraphVariable& variable : graph.variables)
+        variables.add(variable.name, jsonText(variable.value));
+    if (!variables.empty()) root.add("variables", variables.inOneLine());
+
     Members passes;
     for (const GraphPass& pass : graph.passes) passes.add(pass.name, passText(pass));
     root.add("passes", passes.inLines("  "));
 
     std::vector<std::string> edges;
-    for (const GraphEdge& edge : graph.edges)
-        edges.push_back(fmt::format("[{}, {}]", jsonText(edge.from.text()), jsonText(edge.to.text())));
+    for (const GraphEdge& edge : graph.edges) edges.push_back(edgeText(edge));
     root.add("edges", arrayInLines(edges));
 
     std::vector<std::string> outputs;
     for (const GraphOutput& output : graph.outputs) outputs.push_back(jsonText(output.port.text()));
     root.add("outputs", fmt::format("[{}]", fmt::join(outputs, ", ")));
+
+    std::vector<std::string> frames, notes;
+    for (const GraphFrame& frame : graph.frames) frames.push_back(frameText(frame));
+    for (const GraphNote& note : graph.notes)
+        notes.push_back(fmt::format("{{ \"text\": {}, \"position\": {} }}", jsonText(note.text),
+                                    pointText(note.position)));
+    if (!frames.empty()) root.add("frames", arrayInLines(frames));
+    if (!notes.empty()) root.add("notes", arrayInLines(notes));
     return root.inLines("") + "\n";
 }
 

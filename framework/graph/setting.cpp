@@ -1,4 +1,4 @@
-// `--set`: changes a property or moves an edge.
+// `--set`: changes a property or a variable, or moves an edge.
 #include "graph/graph.h"
 #include <charconv>
 #include <cmath>
@@ -73,9 +73,14 @@ public:
 
     void apply(const std::string& setting) {
         const size_t equals = setting.find('=');
-        const auto target = parsePortRef(std::string_view(setting).substr(0, equals));
+        const std::string_view name = std::string_view(setting).substr(0, equals);
+        const auto target = parsePortRef(name);
+        if (equals != std::string::npos && !target && isGraphName(name)) {
+            setVariable(name, setting.substr(equals + 1));
+            return;
+        }
         if (equals == std::string::npos || !target)
-            fail("must be pass.property=value, pass.input=pass.output or pass.input=");
+            fail("must be pass.property=value, variable=value, pass.input=pass.output or pass.input=");
         GraphPass* pass = graph_.find(target->pass);
         if (pass == nullptr) failPass(target->pass);
         const PassType& type = typeOf(*pass);
@@ -110,17 +115,42 @@ private:
         return *type;
     }
 
+    // The text is read as the first property asks that follows the variable; the others are held against it
+    // by validate(), as they are when a file gives it.
+    void setVariable(std::string_view name, const std::string& text) {
+        if (graph_.variable(name) == nullptr) {
+            std::vector<std::string> names;
+            for (const GraphVariable& variable : graph_.variables) names.push_back(variable.name);
+            fail(fmt::format("the graph has no variable '{}'{}", name, didYouMean(std::string(name), names)));
+        }
+        for (const GraphPass& pass : graph_.passes)
+            for (const auto& [property, variable] : pass.bound)
+                if (const PropertyInfo* info = variable == name ? typeOf(pass).property(property) : nullptr) {
+                    Value value = valueOf(*info, text);
+                    refuseMistake(pass, *info, value, text);
+                    graph_.setVariable(name, value);
+                    return;
+                }
+        fail(fmt::format("no property follows the variable '{}'", name));
+    }
+
+    void refuseMistake(const GraphPass& pass, const PropertyInfo& property, const Value& value,
+                       const std::string& text) const {
+        const auto mistake = valueMistake(property, value);
+        if (!mistake) return;
+        // A string that was not understood is shown as it was typed, not as "a string".
+        std::string message =
+            fmt::format("property '{}' of pass '{}' {}", property.name, pass.name, *mistake);
+        const std::string tail = ", not a string";
+        if (std::holds_alternative<std::string>(value) && message.ends_with(tail))
+            message.replace(message.size() - tail.size(), tail.size(), fmt::format(", not '{}'", text));
+        fail(message);
+    }
+
     void setProperty(GraphPass& pass, const PropertyInfo& property, const std::string& text) {
         Value value = valueOf(property, text);
-        if (const auto mistake = valueMistake(property, value)) {
-            // A string that was not understood is shown as it was typed, not as "a string".
-            std::string message =
-                fmt::format("property '{}' of pass '{}' {}", property.name, pass.name, *mistake);
-            const std::string tail = ", not a string";
-            if (std::holds_alternative<std::string>(value) && message.ends_with(tail))
-                message.replace(message.size() - tail.size(), tail.size(), fmt::format(", not '{}'", text));
-            fail(message);
-        }
+        refuseMistake(pass, property, value, text);
+        pass.bound.erase(property.name);
         pass.propertyWhere[property.name] = where_;
         for (auto& [name, old] : pass.properties) {
             if (name != property.name) continue;

@@ -66,6 +66,9 @@ def misfits(value, schema, root=None, place="$"):
         elif key == "pattern":
             if isinstance(value, str) and not re.search(rule, value):
                 no(f"{value!r} does not match {rule}")
+        elif key == "prefixItems":
+            for i, item in enumerate(value[:len(rule)] if isinstance(value, list) else []):
+                found += misfits(item, rule[i], root, f"{place}[{i}]")
         elif key == "items":
             for i, item in enumerate(value if isinstance(value, list) else []):
                 found += misfits(item, rule, root, f"{place}[{i}]")

@@ -175,6 +175,40 @@ TEST(Compile, AnInputThatIsPassedOnNeedsNoPass) {
                             "m2.r: it is the same as the input 'x'"));
 }
 
+TEST(Compile, AMutedPassHandsItsInputOnAndSaysSo) {
+    Registry registry = plainRegistry();
+    registry.add(mockType("Choosy",
+                          {in("depth", PortKind::Buffer), in("image"), opt("tracer", PortKind::Tracer),
+                           out("r"), out("layers", PortKind::Layers)},
+                          simple({"depth", "image"}, {"r"})));
+    registry.add(
+        mockType("Depths", {out("b", PortKind::Buffer)}, [](const World&, const Inputs&, const Demand&) {
+            Declaration d;
+            d.outputs.push_back(output("b", Desc::buffer(16)));
+            d.steps.push_back(step("only", {writes("b", Access::Storage)}));
+            return d;
+        }));
+    const std::string text = R"({"kestrel": 1, "passes": {"s": {"type": "Source"}, "d": {"type": "Depths"},
+        "c": {"type": "Choosy", "muted": true}, "f": {"type": "Filter"}},
+        "edges": [["s.a", "c.image"], ["d.b", "c.depth"], ["c.r", "f.x"]], "outputs": ["f.r", "c.r"]})";
+    const Plan plan = compileText(text, registry);
+    EXPECT_THAT(passNames(plan), ElementsAre("s", "f")); // what only the muted pass reads is left out too
+    EXPECT_EQ(plan.outputs[1].port.text(), "c.r");
+    EXPECT_EQ(plan.outputs[1].resource, plan.passes[0].ports.at("a"));
+    EXPECT_THAT(leftOutTexts(plan), testing::IsSupersetOf({"c.r: it is the same as the input 'image'",
+                                                           "c: its work: it is muted"}));
+    // Nothing of its kind is connected: the output that is asked for cannot be made.
+    EXPECT_EQ(
+        messageOf([&] {
+            compileText(R"({"kestrel": 1, "passes": {"s": {"type": "Source", "muted": true}},
+"outputs": ["s.a"]})",
+                        registry);
+        }),
+        "g.json:2:13: the output 's.a' cannot be made: the pass is muted, and no texture that feeds it can "
+        "stand for "
+        "'a'");
+}
+
 TEST(Compile, DeclaringAgainDropsWhatIsReadForNobody) {
     Registry registry = plainRegistry();
     // Reads `x` only for output `p`, and only the far input where the near one is not constant.

@@ -104,10 +104,12 @@ TEST(GraphDocument, EveryMistakeOfFormComesAtOnceWithItsPlace) {
               "g.json:5:77: 'position' of pass 'a' must be an array of two numbers\n"
               "g.json:5:12: pass 'a' has no key 'typ' (did you mean 'type'?)\n"
               "g.json:6:10: pass 'b' must be an object, not a whole number\n"
-              "g.json:8:13: an edge must be an array of two strings, [\"pass.output\", \"pass.input\"]\n"
+              "g.json:8:13: an edge must be an array of two strings, [\"pass.output\", \"pass.input\"], and "
+              "where it bends on the canvas a list of points\n"
               "g.json:8:30: the end of an edge must be \"pass.port\", not 'b'\n"
               "g.json:8:44: the end of an edge must be a string \"pass.port\", not a whole number\n"
-              "g.json:8:48: an edge must be an array of two strings, [\"pass.output\", \"pass.input\"]\n"
+              "g.json:8:48: an edge must be an array of two strings, [\"pass.output\", \"pass.input\"], and "
+              "where it bends on the canvas a list of points\n"
               "g.json:9:15: an output must be \"pass.port\", not 'a.x.y'\n"
               "g.json:9:24: an output must be \"pass.port\", not '.x'\n"
               "g.json:2:3: the graph has no key 'nmae' (did you mean 'name'?)");
@@ -268,6 +270,87 @@ TEST(GraphSetting, SetsPropertiesByTheirKindAndMovesEdges) {
     EXPECT_EQ(blur.tint, glm::vec3(1, 0, 0.5f));
 }
 
+const char* withVariables = R"({
+  "kestrel": 1,
+  "variables": { "reach": 3, "soft": 0.5, "unused": "x" },
+  "passes": {
+    "s": { "type": "Source" },
+    "near": { "type": "Blur", "properties": { "radius": { "variable": "reach" }, "sigma": { "variable": "soft" } } },
+    "far": { "type": "Blur", "properties": { "wide": true, "radius": { "variable": "reach" } }, "muted": true, )"
+                            R"("position": [1, 2] }
+  },
+  "edges": [
+    ["s.colour", "near.image", [[10, 20], [30.5, -4]]],
+    ["near.result", "far.image"]
+  ],
+  "outputs": ["far.result"],
+  "frames": [
+    { "title": "Blurs", "passes": ["near", "far"] }
+  ],
+  "notes": [
+    { "text": "Both \"the same\"", "position": [0, -50] }
+  ]
+}
+)";
+
+TEST(GraphVariables, AreReadFollowedAndSavedToTheByte) {
+    const Registry registry = smallRegistry();
+    Graph graph = parseGraph(withVariables, "g.json");
+    EXPECT_EQ(saveGraph(graph), withVariables);
+    EXPECT_TRUE(validate(graph, registry).empty());
+    EXPECT_TRUE(graph.passes[2].muted);
+    EXPECT_EQ(graph.edges[0].bends, (std::vector<glm::dvec2>{{10, 20}, {30.5, -4}}));
+    EXPECT_EQ(graph.frames[0].passes, (std::vector<std::string>{"near", "far"}));
+
+    applySetting(graph, registry, "reach=7");
+    const PassSet passes = makePasses(graph, registry);
+    EXPECT_EQ(dynamic_cast<const Blur&>(*passes.at("near")).radius, 7);
+    EXPECT_EQ(dynamic_cast<const Blur&>(*passes.at("far")).radius, 7);
+    // A value of its own leaves the variable to the others.
+    applySetting(graph, registry, "far.radius=2");
+    applySetting(graph, registry, "reach=4");
+    EXPECT_EQ(std::get<std::int64_t>(graph.find("near")->properties[0].second), 4);
+    EXPECT_EQ(std::get<std::int64_t>(graph.find("far")->properties[1].second), 2);
+    EXPECT_THAT(saveGraph(graph), testing::HasSubstr(R"("far": { "type": "Blur", "properties": { "wide": )"
+                                                     R"(true, "radius": 2 }, "muted": true,)"));
+    EXPECT_EQ(messageOf([&] { applySetting(graph, registry, "reach=99"); }),
+              "--set reach=99: property 'radius' of pass 'near' must be from 1 to 8 pixels, not 99");
+    EXPECT_EQ(messageOf([&] { applySetting(graph, registry, "recah=1"); }),
+              "--set recah=1: the graph has no variable 'recah' (did you mean 'reach'?)");
+    EXPECT_EQ(messageOf([&] { applySetting(graph, registry, "unused=1"); }),
+              "--set unused=1: no property follows the variable 'unused'");
+}
+
+TEST(GraphVariables, EveryMistakeOfTheCanvasAndOfVariablesHasItsPlace) {
+    EXPECT_EQ(
+        messageOf([] {
+            parseGraph(R"({ "kestrel": 1, "variables": { "A": 1, "b": null, "reach": 2 }, "passes": {
+"p": { "type": "T", "properties": { "x": { "variable": "raech" }, "y": { "var": 1 } }, "muted": 1 } },
+"edges": [["p.a", "p.b", 3], ["p.a", "p.b", [[1]]], ["p.a", "p.b", [], 1]],
+"frames": [{ "title": "f", "passes": ["q", 1] }, { "titel": "f", "passes": [] }],
+"notes": [{ "text": "n", "position": [1, 2, 3] }] })",
+                       "g");
+        }),
+        "g:1:32: the variable name 'A' must be like that of a pass: lower_case letters, digits and single "
+        "underscores\n"
+        "g:1:45: variable 'b' must be true or false, a number, a string or an array of up to 4 numbers, "
+        "not null\n"
+        "g:2:56: property 'x' of pass 'p' follows the variable 'raech', which the graph has not (did you "
+        "mean 'reach'?)\n"
+        "g:2:72: property 'y' of pass 'p' needs 'variable'\n"
+        "g:2:74: property 'y' of pass 'p' has no key 'var'\n"
+        "g:2:97: 'muted' of pass 'p' must be true or false, not a whole number\n"
+        "g:3:26: the bends of an edge must be an array of points\n"
+        "g:3:46: a bend of an edge must be an array of two numbers\n"
+        "g:3:53: an edge must be an array of two strings, [\"pass.output\", \"pass.input\"], and where it "
+        "bends on the canvas a list of points\n"
+        "g:4:39: there is no pass 'q' (in frame 'f') (did you mean 'p'?)\n"
+        "g:4:44: a pass of a frame must be a string, not a whole number\n"
+        "g:4:50: a frame needs 'title'\n"
+        "g:4:52: a frame has no key 'titel' (did you mean 'title'?)\n"
+        "g:5:38: 'position' of a note must be an array of two numbers");
+}
+
 TEST(GraphSetting, RefusesWithASentence) {
     const Registry registry = smallRegistry();
     Graph graph = parseGraph(
@@ -279,8 +362,11 @@ TEST(GraphSetting, RefusesWithASentence) {
         EXPECT_TRUE(message.starts_with(place)) << message;
         return message.substr(std::min(place.size(), message.size()));
     };
-    EXPECT_EQ(refused("blur.radius"), "must be pass.property=value, pass.input=pass.output or pass.input=");
-    EXPECT_EQ(refused("radius=1"), "must be pass.property=value, pass.input=pass.output or pass.input=");
+    const std::string forms =
+        "must be pass.property=value, variable=value, pass.input=pass.output or pass.input=";
+    EXPECT_EQ(refused("blur.radius"), forms);
+    EXPECT_EQ(refused("Radius=1"), forms);
+    EXPECT_EQ(refused("radius=1"), "the graph has no variable 'radius'");
     EXPECT_EQ(refused("blurr.radius=1"), "there is no pass 'blurr' (did you mean 'blur'?)");
     EXPECT_EQ(refused("n.x=1"), "pass 'n' has the unknown type 'None'");
     EXPECT_EQ(refused("blur.radios=1"),

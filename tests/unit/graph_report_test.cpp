@@ -149,11 +149,14 @@ TEST(Report, TheSchemaComesFromTheTables) {
                   ->text,
               "#/$defs/Tuned");
     const Json* properties = definitions->find("Tuned")->find("properties");
-    EXPECT_EQ(properties->find("count")->find("type")->text, "integer");
-    EXPECT_EQ(properties->find("count")->find("maximum")->integer, 9);
+    // A value, or a variable that the property follows.
+    const auto valueOf = [&](const char* name) { return &properties->find(name)->find("anyOf")->items[0]; };
+    EXPECT_EQ(properties->find("count")->find("anyOf")->items[1].find("$ref")->text, "#/$defs/follows");
+    EXPECT_EQ(valueOf("count")->find("type")->text, "integer");
+    EXPECT_EQ(valueOf("count")->find("maximum")->integer, 9);
     EXPECT_EQ(properties->find("count")->find("description")->text, "How often (times)");
-    EXPECT_EQ(properties->find("mode")->find("enum")->items[0].text, "one");
-    EXPECT_EQ(properties->find("offset")->find("minItems")->integer, 2);
+    EXPECT_EQ(valueOf("mode")->find("enum")->items[0].text, "one");
+    EXPECT_EQ(valueOf("offset")->find("minItems")->integer, 2);
     EXPECT_EQ(properties->find("label")->find("default")->text, "a \"b\"");
     EXPECT_FALSE(definitions->find("Tuned")->find("additionalProperties")->boolean);
 }
