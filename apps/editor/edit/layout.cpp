@@ -226,6 +226,15 @@ bool placeMissing(Graph& graph, const Sizes& sizes, const LayoutGaps& gaps) {
     return true;
 }
 
+void keepPlaces(Graph& graph, const Places& drawn) {
+    if (std::none_of(graph.passes.begin(), graph.passes.end(),
+                     [](const GraphPass& pass) { return pass.position; }))
+        return;
+    for (GraphPass& pass : graph.passes)
+        if (const auto place = drawn.find(pass.name); !pass.position && place != drawn.end())
+            pass.position = place->second;
+}
+
 size_t crossings(const Graph& graph, const Names& which) {
     struct Line {
         glm::dvec2 from, to;

@@ -22,6 +22,13 @@ void arrange(Graph& graph, const Names& which, const Sizes& sizes, const LayoutG
 // True if there were any.
 bool placeMissing(Graph& graph, const Sizes& sizes, const LayoutGaps& gaps = {});
 
+// Where passes are drawn that the document gives no place.
+using Places = std::map<std::string, glm::dvec2, std::less<>>;
+
+// Once one pass has a place, all are to have one, or those without would be arranged around it: gives them
+// the places at which they are drawn. A graph in which nobody placed anything stays without positions.
+void keepPlaces(Graph& graph, const Places& drawn);
+
 // Edges that cross, of straight edges between the columns' boxes: for tests and for choosing among layouts.
 size_t crossings(const Graph& graph, const Names& which);
 

@@ -1,0 +1,87 @@
+// kestrel-editor: views, edits and compares graphs in a window.
+#include "core/files.h"
+#include "plugin/loader.h"
+#include "window.h"
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <fmt/format.h>
+
+namespace {
+
+using namespace kestrel;
+
+struct Arguments {
+    std::string graph, scene;
+    std::string size = "640x360";
+    float scale = 1;
+    bool light = false;
+};
+
+// A graph as it is named, else among those that come with Kestrel.
+std::filesystem::path graphFile(const std::string& graph) {
+    std::error_code ignored;
+    const std::filesystem::path shipped = shareFolder() / "graphs" / graph;
+    return !std::filesystem::exists(graph, ignored) && std::filesystem::is_regular_file(shipped, ignored)
+               ? shipped
+               : std::filesystem::path(graph);
+}
+
+Extent sizeOf(const std::string& text) {
+    unsigned width = 0, height = 0;
+    const size_t cross = text.find('x');
+    if (cross != std::string::npos) {
+        std::from_chars(text.data(), text.data() + cross, width);
+        std::from_chars(text.data() + cross + 1, text.data() + text.size(), height);
+    }
+    if (width < 1 || height < 1 || width > 16'384 || height > 16'384)
+        throw InputError(fmt::format("--size {}: it must be WIDTHxHEIGHT with 1 to 16384 each", text));
+    return {width, height, 1};
+}
+
+int run(const Arguments& arguments) {
+    static const Registry registry = [] {
+        Registry loaded;
+        loadPlugins(loaded, pluginFolders());
+        return loaded;
+    }();
+    Graph graph;
+    if (!arguments.graph.empty()) graph = loadGraph(graphFile(arguments.graph));
+    edit::SessionOptions options;
+    options.size = sizeOf(arguments.size);
+    options.scene = arguments.scene;
+    edit::Theme theme;
+    theme.scale = arguments.scale;
+    theme.dark = !arguments.light;
+    edit::Window window({1600, 900, 1}, theme);
+    edit::Session session(registry, window.context().capabilities(), window.context().driver(),
+                          std::move(graph), options);
+    edit::Editor editor(session, theme);
+    window.run(editor, theme);
+    return static_cast<int>(ExitStatus::Done);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Views, edits and compares Kestrel's graphs");
+    Arguments arguments;
+    app.add_option("GRAPH", arguments.graph, "Graph file, or the name of one that comes with Kestrel");
+    app.add_option("--scene,-s", arguments.scene, "Scene in place of the graph's");
+    app.add_option("--size", arguments.size, "Size of the picture, WIDTHxHEIGHT")->capture_default_str();
+    app.add_option("--scale", arguments.scale, "Of text and widgets")
+        ->check(CLI::Range(0.6, 3.0))
+        ->capture_default_str();
+    app.add_flag("--light", arguments.light, "Dark text on light");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::BadInput);
+    }
+    try {
+        return run(arguments);
+    } catch (const Error& error) {
+        for (const Problem& problem : error.problems())
+            fmt::print(stderr, "kestrel-editor: {}\n", problem.text());
+        return static_cast<int>(error.status());
+    }
+}

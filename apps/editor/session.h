@@ -1,0 +1,86 @@
+// What the window works on: the document, and a renderer that follows it. Needs a current context, no window.
+#pragma once
+#include "edit/document.h"
+#include "edit/layout.h"
+#include "edit/problems.h"
+#include "execute/renderer.h"
+#include "measure/profile.h"
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kestrel::edit {
+
+struct SessionOptions {
+    Extent size{640, 360, 1};
+    std::string scene; // in place of the graph's; empty: the graph's
+    SceneOptions sceneOptions = {};
+    bool timing = true;
+};
+
+class Session {
+public:
+    Session(const Registry& registry, const Capabilities& capabilities, std::string driver, Graph graph,
+            SessionOptions options);
+    ~Session();
+
+    Document document;
+    // Ports that the viewports show; asked of the renderer as previews, so that they cost nothing when they
+    // go.
+    std::vector<PortRef> shown;
+    Places places; // where the canvas draws passes without a position
+    // A step of the document. What is refused is told: the sentence; empty if it was done.
+    std::string apply(const std::string& name, const std::function<void(Graph&)>& change,
+                      std::uint64_t gesture = 0);
+
+    bool playing = true; // renders frame after frame; otherwise only what changed
+
+    // Takes the document over if it changed: the scene where the graph names another one, then the graph.
+    // What is wrong stands in problems() and the renderer stays at the last graph that was right.
+    void follow();
+    // The next frame, if there is a renderer and something to do: playing, or anything changed. True if it
+    // rendered.
+    bool render();
+    // Shaders that changed on the disk; true if something was compiled anew.
+    bool reloadShaders();
+
+    [[nodiscard]] const std::vector<Marked>& problems() const { return problems_; }
+    [[nodiscard]] Renderer* renderer() const { return renderer_.get(); }
+    [[nodiscard]] const Profile& profile() const { return profile_; } // since the last change
+    [[nodiscard]] const std::string& driver() const { return driver_; }
+    [[nodiscard]] const Registry& registry() const { return registry_; }
+    [[nodiscard]] const Extent& size() const { return options_.size; }
+    void setSize(Extent size);
+    void setScene(const std::string& scene); // in place of the graph's; empty: the graph's
+    void restart();                          // frame 0 again
+    // The content of a port in the frame that was rendered last; empty where it is not held, with the reason.
+    [[nodiscard]] Image read(const PortRef& port, std::string& whyNot);
+    // Why a pass, or a port of it, is not made; empty if it is.
+    [[nodiscard]] std::string leftOut(const std::string& pass) const;
+    // The command line that renders the same picture headless.
+    [[nodiscard]] std::string commandLine(const PortRef& port) const;
+    // Goes up with every frame rendered.
+    [[nodiscard]] std::uint64_t frames() const { return frames_; }
+
+private:
+    void take();
+    void fail(const std::vector<Problem>& problems);
+
+    const Registry& registry_;
+    Capabilities capabilities_;
+    std::string driver_;
+    SessionOptions options_;
+    std::unique_ptr<Renderer> renderer_;
+    std::string sceneKey_; // what the scene was loaded from
+    Graph located_;
+    std::vector<Marked> problems_;
+    std::uint64_t taken_ = 0; // revision of the document that the renderer has, or that is wrong
+    std::vector<PortRef> takenShown_;
+    bool due_ = true, stuck_ = false;
+    Profile profile_;
+    std::uint64_t frames_ = 0;
+};
+
+} // namespace kestrel::edit

@@ -1,0 +1,22 @@
+// Keys as GLFW names them, apart from Dear ImGui, whose key codes changed between the versions that Debian
+// has.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace kestrel::edit {
+
+// A key with what is held beside it.
+struct Chord {
+    int key = 0; // GLFW_KEY_*; 0: none
+    bool ctrl = false, shift = false, alt = false;
+    friend bool operator==(const Chord&, const Chord&) = default;
+};
+// "Ctrl+Shift+S"; empty for none. And back; none if it is no such text.
+std::string chordText(const Chord& chord);
+Chord chordOf(const std::string& text);
+
+// Keys that went down since the last frame, also by repetition.
+using KeyEvents = std::vector<Chord>;
+
+} // namespace kestrel::edit
