@@ -104,6 +104,20 @@ bool Session::render() {
     return true;
 }
 
+bool Session::renderAgain() {
+    if (renderer_ == nullptr || stuck_) return false;
+    const std::uint32_t frames = std::max(renderer_->nextFrame(), 1u);
+    renderer_->restart();
+    try {
+        for (std::uint32_t i = 0; i < frames; ++i) renderer_->frame();
+    } catch (const Error& error) {
+        fail(error.problems());
+        return false;
+    }
+    ++frames_;
+    return true;
+}
+
 bool Session::reloadShaders() {
     if (renderer_ == nullptr) return false;
     try {

@@ -43,6 +43,9 @@ public:
     // The next frame, if there is a renderer and something to do: playing, or anything changed. True if it
     // rendered.
     bool render();
+    // The frame that was rendered last, once more from the beginning: as many frames as were rendered since
+    // the last start, since what is accumulated belongs to it. False where something is wrong.
+    bool renderAgain();
     // Shaders that changed on the disk; true if something was compiled anew.
     bool reloadShaders();
 

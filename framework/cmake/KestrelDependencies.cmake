@@ -71,6 +71,13 @@ find_package(glfw3 QUIET)
 set(KESTREL_HAS_WINDOW ${glfw3_FOUND})
 kestrel_optional(KESTREL_HAS_WINDOW window libglfw3-dev)
 
+find_path(IMGUI_INCLUDE imgui.h PATH_SUFFIXES imgui)
+find_library(IMGUI_LIBRARY imgui)
+if(KESTREL_HAS_WINDOW AND IMGUI_INCLUDE AND IMGUI_LIBRARY)
+    set(KESTREL_HAS_EDITOR ON)
+endif()
+kestrel_optional(KESTREL_HAS_EDITOR editor libimgui-dev)
+
 find_package(embree 4 QUIET)
 if(NOT embree_FOUND)
     find_package(embree 3 QUIET)
