@@ -341,6 +341,7 @@ void Editor::openNow(const std::filesystem::path& file) {
         autosave_.drop(session_.document.graph().file);
         session_.setScene("");
         session_.document.open(std::move(graph));
+        session_.places.clear();
     } catch (const Error& error) {
         for (const Problem& problem : error.problems()) say(problem.text());
         return;

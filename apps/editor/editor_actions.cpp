@@ -25,6 +25,7 @@ void Editor::addFileActions() {
             Graph graph;
             graph.sceneSource = session_.document.graph().sceneSource;
             session_.document.open(std::move(graph));
+            session_.places.clear();
             viewport.a = viewport.b = {};
         });
     });

@@ -72,7 +72,7 @@ void Editor::swap() {
     const Graph& graph = session_.document.graph();
     std::vector<Palette::Entry> entries;
     const auto tell = [this](const Swapped& swapped) {
-        say(fmt::format("{} edges stay", swapped.kept.size()));
+        say(fmt::format("edges that stay: {}", swapped.kept.size()));
         for (const std::string& dropped : swapped.dropped) say("dropped: " + dropped);
     };
     for (const std::string& rival : rivalPasses(graph, session_.registry(), pass))

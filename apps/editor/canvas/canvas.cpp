@@ -31,14 +31,17 @@ void Canvas::layOut(Session& session, const Theme& theme) {
     if (boxesOf_ == session.document.revision() && boxes_.size() == session.document.graph().passes.size())
         return;
     // What has no place is drawn at one that the layout finds; the document stays as it is.
+    // Where something is drawn it stays, whatever is changed elsewhere.
     Graph placed = session.document.graph();
+    for (GraphPass& pass : placed.passes)
+        if (const auto before = session.places.find(pass.name);
+            !pass.position && before != session.places.end())
+            pass.position = before->second;
     boxes_ = boxesOf(placed, session.registry(), measure);
+    if (placeMissing(placed, sizesOf(boxes_))) boxes_ = boxesOf(placed, session.registry(), measure);
     session.places.clear();
-    if (placeMissing(placed, sizesOf(boxes_))) {
-        boxes_ = boxesOf(placed, session.registry(), measure);
-        for (const GraphPass& pass : session.document.graph().passes)
-            if (!pass.position) session.places[pass.name] = *placed.find(pass.name)->position;
-    }
+    for (const GraphPass& pass : session.document.graph().passes)
+        if (!pass.position) session.places[pass.name] = *placed.find(pass.name)->position;
     std::erase_if(selection,
                   [&](const std::string& pass) { return session.document.graph().find(pass) == nullptr; });
     if (picked && session.document.graph().find(picked->pass) == nullptr) picked.reset();
@@ -125,6 +128,7 @@ void Canvas::press(Session& session, glm::dvec2 at) {
 
 void Canvas::pressPort(Session& session, const PortRef& port) {
     picked = port;
+    selection = {port.pass};
     gesture_ = Gesture::Wire;
     wireFrom_ = port;
     wireMoves_.reset();

@@ -71,11 +71,11 @@ void Viewport::show(Session& session) {
     first_.follow(session, a);
     if (layout != Layout::One && !heldStill_) second_.follow(session, b);
     if (automatic && !first_.image.empty()) automaticRange(first_.image, development);
-    bar(session);
+    bar();
     draw(session);
 }
 
-void Viewport::bar(Session& session) {
+void Viewport::bar() {
     ImGui::PushItemWidth(ImGui::GetFontSize() * 7);
     int mode = static_cast<int>(development.mode);
     if (ImGui::Combo("##mode", &mode, developmentNames, IM_ARRAYSIZE(developmentNames)))
@@ -93,10 +93,7 @@ void Viewport::bar(Session& session) {
     ImGui::SameLine();
     int shown = static_cast<int>(layout);
     if (ImGui::Combo("##layout", &shown, "one\0split\0slider\0")) layout = static_cast<Layout>(shown);
-    ImGui::SameLine();
-    ImGui::TextUnformatted(errorText().c_str());
     ImGui::PopItemWidth();
-    (void)session;
 }
 
 // Mean square and FLIP of `a` to `b`, which stands for the reference.
@@ -148,6 +145,10 @@ void Viewport::draw(Session& session) {
             if (active)
                 slider = std::clamp((ImGui::GetIO().MousePos.x - low.x) / (high.x - low.x), 0.0f, 1.0f);
         }
+        const ImVec2 at(low.x + 4, high.y - ImGui::GetTextLineHeight() - 4);
+        const std::string error = errorText();
+        list->AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 255), error.c_str());
+        list->AddText(at, IM_COL32_WHITE, error.c_str());
         if (split) drawPicture(second_, {low.x + half, low.y}, {high.x + half, high.y}, 0, 1);
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         const int x = static_cast<int>(std::floor((mouse.x - low.x) / scale)),

@@ -51,7 +51,7 @@ private:
         void follow(Session& session, const PortRef& wantedPort);
         void makeTexture(const Development& development);
     };
-    void bar(Session& session);
+    void bar();
     void draw(Session& session);
     void drawPicture(Picture& picture, ImVec2 low, ImVec2 high, float from, float to);
     void inspector();
