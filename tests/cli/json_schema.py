@@ -59,6 +59,10 @@ def misfits(value, schema, root=None, place="$"):
         elif key in ("minimum", "maximum"):
             if TYPES["number"](value) and (value < rule if key == "minimum" else value > rule):
                 no(f"{value} is beyond the {key} {rule}")
+        elif key in ("exclusiveMinimum", "exclusiveMaximum"):
+            low = key == "exclusiveMinimum"
+            if TYPES["number"](value) and (value <= rule if low else value >= rule):
+                no(f"{value} is not within the {key} {rule}")
         elif key in ("minLength", "maxLength", "minItems", "maxItems", "minProperties"):
             kind = {"Length": str, "Items": list, "Properties": dict}[key[3:]]
             if isinstance(value, kind) and (len(value) < rule if key.startswith("min") else len(value) > rule):
