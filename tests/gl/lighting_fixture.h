@@ -64,7 +64,7 @@ void main() {
     vec3 n = texelFetch(normal, pixel, 0).xyz;
     vec3 position = positionFromDepth(depthView, vec2(pixel) + 0.5, z > 0.0 ? z : 1.0);
     vec3 eye = towardsEye(depthView, position);
-    Surface at = Surface(position + lift * n, error, n, n, texelFetch(albedo, pixel, 0).rgb, 0.0, 1.0, vec3(0.0), 0u, true);
+    Surface at = Surface(position + lift * n, error, n, n, texelFetch(albedo, pixel, 0).rgb, 0.0, 1.0, vec3(0.0), 0u, true, 0.0);
     imageStore(result, pixel, vec4(z > 0.0 ? radiance_surface(at, eye) : radiance_miss(-eye), z > 0.0 ? 1.0 : 0.0));
 }
 )";
