@@ -75,7 +75,7 @@ TEST_F(ABufferTruth, IsWhatRaysThroughPixelsMeet) {
 }
 
 TEST_F(ABufferLists, EveryStructureHoldsTheSameInOrder) {
-    const Scene scene = loadScene("builtin:lattice?detail=0.3");
+    const Scene scene = loadScene("builtin:lattice?detail=0.1");
     const Lists expected = made(scene, {});
     for (const std::vector<Fragment>& list : expected)
         for (size_t i = 1; i < list.size(); ++i)
@@ -86,7 +86,10 @@ TEST_F(ABufferLists, EveryStructureHoldsTheSameInOrder) {
             for (const char* allocation : {"counter", "counted"})
                 for (const int buckets : {1, 4, 16}) {
                     const bool bucketed = std::string(structure).ends_with("lb");
+                    // Numbers of buckets with one of the other choices: what they change lies apart.
                     if ((!bucketed && buckets > 1) ||
+                        (bucketed && buckets != 4 &&
+                         (std::string(decoupled) == "false" || std::string(allocation) == "counter")) ||
                         (std::string(structure) == "sb" && std::string(allocation) == "counter"))
                         continue;
                     EXPECT_EQ(made(scene, {fmt::format("store.structure={}", structure),

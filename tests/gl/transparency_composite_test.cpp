@@ -31,9 +31,8 @@ TEST_F(Composite, PanesLeaveWhatTheClosedFormSaysFromEveryGiverOfLayers) {
     const glm::vec3 wanted = over({red, green, blue}, skyColour);
     std::vector<std::vector<std::string>> givers = {{"transparent.layers=peeling.layers"},
                                                     {"transparent.layers=k_buffer.layers"}};
-    for (const char* structure : {"sb", "ll", "dll", "llb", "dllb"})
+    for (const char* structure : {"sb", "dllb"})
         givers.push_back({std::string("store.structure=") + structure});
-    givers.push_back({"store.structure=sb", "store.decoupled=false"});
     givers.push_back({"store.structure=ll", "store.decoupled=false"});
     givers.push_back({"store.structure=dllb", "store.buckets=16", "store.allocation=counter"});
     givers.push_back({"depth_bounds.blended=kept"});
