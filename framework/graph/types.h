@@ -169,8 +169,8 @@ struct FragmentLists {
     int side = 0;          // of a face, pixels; 0: there is no cube
     float nearPlane = 0;   // by which each face's eye stands behind the frame's, scene units
     Blended blended = Blended::Tested;
-    bool counted = true;   // the bounds tell how many fragments each pixel has
-    bool shifted = false;  // buckets have equally many fragments, not equal parts of the depth range
+    bool counted = true;  // the bounds tell how many fragments each pixel has
+    bool shifted = false; // buckets have equally many fragments, not equal parts of the depth range
     friend bool operator==(const FragmentLists&, const FragmentLists&) = default;
 };
 

@@ -108,7 +108,8 @@ struct ABufferLists : ShippedTest {
         settings.insert(settings.begin(), {fmt::format("depth_bounds.side={}", side),
                                            fmt::format("depth_bounds.near={}", nearPlane)});
         Graph graph = shippedGraph("abuffer_ao", settings);
-        graph.outputs = {{{"reorder", "pixels"}, {}}, {{"reorder", "nodes"}, {}}, {{"reorder", "triangles"}, {}}};
+        graph.outputs = {
+            {{"reorder", "pixels"}, {}}, {{"reorder", "nodes"}, {}}, {{"reorder", "triangles"}, {}}};
         RenderOptions options;
         options.countIterations = true;
         Renderer renderer = ABufferLists::renderer(graph, scene, options, size);
@@ -119,7 +120,8 @@ struct ABufferLists : ShippedTest {
 
 // Fragments and hits of one pixel that belong together: the same triangle, or another at the same depth (an
 // edge that one side of the comparison gives to a neighbour).
-inline size_t unmatched(const std::vector<Fragment>& list, const std::vector<Fragment>& hits, float tolerance) {
+inline size_t unmatched(const std::vector<Fragment>& list, const std::vector<Fragment>& hits,
+                        float tolerance) {
     std::vector<bool> taken(hits.size(), false);
     size_t lost = 0;
     for (const Fragment& fragment : list) {

@@ -402,10 +402,9 @@ TEST_F(BindTest, TheFirstBadValueIsNamed) {
     const Graph graph = graphOf({"bad: Bad"}, {}, {"bad.result"});
     EXPECT_EQ(messageOfFrame(graph), "no error");
     // Row 1 of OpenGL is the third from the top.
-    EXPECT_THAT(
-        messageOfFrame(graph, options),
-        AllOf(HasSubstr("frame 0: pass 'bad', port 'result', pixel (5, 2), channel 0"),
-              HasSubstr("is not a number; 1 of its values is bad")));
+    EXPECT_THAT(messageOfFrame(graph, options),
+                AllOf(HasSubstr("frame 0: pass 'bad', port 'result', pixel (5, 2), channel 0"),
+                      HasSubstr("is not a number; 1 of its values is bad")));
 }
 
 } // namespace

@@ -32,8 +32,8 @@ TEST_P(Golden, ThePictureIsTheOneThatWasKept) {
     for (const GraphPass& pass : graph.passes)
         if (shipped().find(pass.type) == nullptr) GTEST_SKIP() << "this build has no " << pass.type;
     const bool asked = graph.sceneSource.find('?') != std::string::npos;
-    Renderer made = renderer(graph, loadScene(graph.sceneSource + (asked ? "&" : "?") + "detail=0.1"), {},
-                             {128, 72, 1});
+    Renderer made =
+        renderer(graph, loadScene(graph.sceneSource + (asked ? "&" : "?") + "detail=0.1"), {}, {128, 72, 1});
     for (int i = 0; i < 2; ++i) made.frame();
     for (const GraphOutput& output : graph.outputs) {
         if (made.desc(output.port).kind != ResourceKind::Texture2D) continue;
