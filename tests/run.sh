@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs every test. Arguments go to ctest: tests/run.sh -L unit
+# Installs what is missing, builds, and runs the tests, all but those that take long. Arguments go to ctest, which then
+# chooses among all of them: tests/run.sh -L unit
 #
 # tests/run.sh --stage NAME [CTEST ARGUMENT]... runs one of the further stages instead:
+#   slow       the tests that take long: every combination of what a pass can be, whole lists against Embree
 #   format     every C++ file stands as .clang-format has it
 #   sanitize   the tests that need no GL, under the address and undefined-behaviour sanitizers
 #   strict     every file by itself, without precompiled headers, also for names that hide others: it must include what it uses
@@ -14,6 +16,11 @@ if [ "${1:-}" = --stage ]; then
     stage=${2:?--stage needs a name}
     shift 2
 fi
+# Half of the time of all tests; the graphs' own tests go through the same passes.
+slow='ABuffer(Lists|Rays|Hits|Primitives|Construction|Limits|Layers)\.|ShippedErrors\.NoGraph'
+slow+='|ShippedShaders\.CompileUnderEvery|stress_test\.test_what_is_killed|Composite\.(Panes|TheHouse|What|More|Surfaces)'
+slow+='|Hold/path_trace|LeavingOutChangesNoImage/(path_trace|full|transparency|rsm_gather)|Horizons\.WithLayersTheTower'
+slow+='|DistanceFields\.EveryVariant'
 sources() { git -C "$root" ls-files '*.cpp' '*.h' | grep -v '^shaders/'; }
 
 # build FOLDER CMAKE_ARGUMENT... [-- TARGET...]: the build of a stage beside the usual one.
@@ -38,10 +45,16 @@ run() {
 }
 
 case "$stage" in
-tests)
+tests | slow)
     export KESTREL_BUILD=${KESTREL_BUILD:-$root/build}
     "$root/apps/build.sh" test
-    run "$KESTREL_BUILD" "$@"
+    if [ "$stage" = slow ]; then
+        run "$KESTREL_BUILD" -R "$slow" "$@"
+    elif [ $# -gt 0 ]; then
+        run "$KESTREL_BUILD" "$@"
+    else
+        run "$KESTREL_BUILD" -E "$slow"
+    fi
     ;;
 format)
     "$root/apps/install.sh" stage
@@ -78,13 +91,13 @@ tidy)
     ;;
 all)
     "$0"
-    for each in format tidy strict sanitize; do
+    for each in slow format tidy strict sanitize; do
         echo "== $each"
         "$0" --stage "$each"
     done
     ;;
 *)
-    echo "tests/run.sh: there is no stage '$stage': format, tidy, strict, sanitize, all" >&2
+    echo "tests/run.sh: there is no stage '$stage': slow, format, tidy, strict, sanitize, all" >&2
     exit 2
     ;;
 esac
