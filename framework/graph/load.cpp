@@ -286,8 +286,8 @@ void Graph::setVariable(std::string_view variableName, const Value& value) {
     for (GraphVariable& variable : variables)
         if (variable.name == variableName) variable.value = value;
     for (GraphPass& pass : passes)
-        for (auto& [name, held] : pass.properties)
-            if (const auto follows = pass.bound.find(name);
+        for (auto& [property, held] : pass.properties)
+            if (const auto follows = pass.bound.find(property);
                 follows != pass.bound.end() && follows->second == variableName)
                 held = value;
 }

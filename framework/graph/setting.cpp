@@ -73,10 +73,10 @@ public:
 
     void apply(const std::string& setting) {
         const size_t equals = setting.find('=');
-        const std::string_view name = std::string_view(setting).substr(0, equals);
-        const auto target = parsePortRef(name);
-        if (equals != std::string::npos && !target && isGraphName(name)) {
-            setVariable(name, setting.substr(equals + 1));
+        const std::string_view left = std::string_view(setting).substr(0, equals);
+        const auto target = parsePortRef(left);
+        if (equals != std::string::npos && !target && isGraphName(left)) {
+            setVariable(left, setting.substr(equals + 1));
             return;
         }
         if (equals == std::string::npos || !target)

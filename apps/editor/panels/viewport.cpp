@@ -145,10 +145,10 @@ void Viewport::draw(Session& session) {
             if (active)
                 slider = std::clamp((ImGui::GetIO().MousePos.x - low.x) / (high.x - low.x), 0.0f, 1.0f);
         }
-        const ImVec2 at(low.x + 4, high.y - ImGui::GetTextLineHeight() - 4);
+        const ImVec2 foot(low.x + 4, high.y - ImGui::GetTextLineHeight() - 4);
         const std::string error = errorText();
-        list->AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 255), error.c_str());
-        list->AddText(at, IM_COL32_WHITE, error.c_str());
+        list->AddText({foot.x + 1, foot.y + 1}, IM_COL32(0, 0, 0, 255), error.c_str());
+        list->AddText(foot, IM_COL32_WHITE, error.c_str());
         if (split) drawPicture(second_, {low.x + half, low.y}, {high.x + half, high.y}, 0, 1);
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         const int x = static_cast<int>(std::floor((mouse.x - low.x) / scale)),

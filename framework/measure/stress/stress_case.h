@@ -40,9 +40,9 @@ enum class StressExpects : std::uint8_t {
 
 // Sets every property of that name, or whose unit is that one, to one end of its range or to a value.
 struct StressProperty {
-    enum class To : std::uint8_t { Least, Most, Value };
+    enum class To : std::uint8_t { Least, Most, Given };
     std::string_view name = {}, unit = {}; // either may be empty
-    To to = To::Value;
+    To to = To::Given;
     double value = 0;
 };
 
