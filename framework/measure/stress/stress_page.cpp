@@ -28,7 +28,7 @@ table.cases tr:hover th, table.cases tr:hover td { border-color: var(--line); }
 
 // What one cell tells: the worst of the checks of a port.
 struct Cell {
-    std::string_view shown = "";
+    std::string_view shown;
     std::string text, title;
 };
 
