@@ -1,24 +1,28 @@
 #!/usr/bin/env bash
-# Tries the README's two commands as a newcomer would: a fresh clone in a bare Debian 12 root that has only git and sudo,
+# Tries the README's two commands as a newcomer would: a fresh clone in a bare Debian root that has only git and sudo,
 # made with debootstrap from the mirror that this machine's apt uses. Needs root.
-#   tests/bare_debian.sh [ROOT FOLDER] [COMMAND]...      default: apps/demo.sh, then tests/run.sh
+#   tests/bare_debian.sh [SUITE] [ROOT FOLDER] [COMMAND]...      default: bookworm (Debian 12); apps/demo.sh, then tests/run.sh
 set -euo pipefail
 source=$(cd "$(dirname "$0")/.." && pwd)
-root=${1:-/var/tmp/kestrel-bare}
-shift || true
+suite=${1:-bookworm}
+root=${2:-/var/tmp/kestrel-$suite}
+shift $(($# < 2 ? $# : 2))
 [ $# -gt 0 ] && commands=("$@") || commands=(apps/demo.sh tests/run.sh)
 [ "$(id -u)" -eq 0 ] || { echo "tests/bare_debian.sh: needs root for debootstrap and chroot" >&2; exit 3; }
 command -v debootstrap >/dev/null || apt-get install -y -qq debootstrap
 
-mirror=$(apt-get indextargets --format '$(SITE) $(RELEASE)' | awk '$2 == "bookworm" { print $1; exit }')
 if [ ! -x "$root/usr/bin/git" ]; then
-    debootstrap --variant=minbase --include=git,sudo,ca-certificates bookworm "$root" "${mirror:?no bookworm mirror in apt}"
-    # The same way to packages as this machine: its sources and its client's settings.
-    cp -r /etc/apt/sources.list.d /etc/apt/apt.conf.d "$root/etc/apt/" 2>/dev/null || true
+    mirror=$(apt-get indextargets --format '$(SITE) $(LABEL)' | awk '$2 == "Debian" { print $1; exit }')
+    # The script of unstable serves every suite of today, also one that this debootstrap has not heard of.
+    debootstrap --variant=minbase --include=git,sudo,ca-certificates "$suite" "$root" \
+        "${mirror:?apt has no mirror of Debian}" /usr/share/debootstrap/scripts/sid
+    # The same way to packages as this machine: its client's settings.
+    cp -r /etc/apt/apt.conf.d "$root/etc/apt/" 2>/dev/null || true
     rm -f "$root"/etc/apt/apt.conf.d/docker-*
-    [ -s "$root/etc/apt/sources.list.d/debian.sources" ] && rm -f "$root/etc/apt/sources.list"
     cp /etc/resolv.conf "$root/etc/resolv.conf"
     echo "127.0.0.1 localhost $(hostname)" >>"$root/etc/hosts"
+fi
+if ! chroot "$root" id newcomer >/dev/null 2>&1; then
     chroot "$root" useradd -m -G sudo newcomer
     echo 'newcomer ALL=(ALL) NOPASSWD: ALL' >"$root/etc/sudoers.d/newcomer"
 fi

@@ -38,18 +38,18 @@ kestrel_require_library(tinygltf tinygltf libtinygltf-dev)
 kestrel_require_header(stb stb_image.h libstb-dev stb)
 kestrel_require_library(stb stb libstb-dev)
 
-# Debian's glslang is a set of static libraries that refer to each other.
+# glslang is a set of static libraries that refer to each other, fewer from version to version.
 kestrel_require_header(glslang glslang/Public/ShaderLang.h glslang-dev)
-set(glslang_group -Wl,--start-group)
-foreach(part glslang MachineIndependent GenericCodeGen OGLCompiler OSDependent glslang-default-resource-limits SPIRV
-             SPIRV-Tools-opt SPIRV-Tools)
-    find_library(glslang_${part} ${part})
-    if(NOT glslang_${part})
-        message(FATAL_ERROR "lib${part} is missing: install glslang-dev and spirv-tools")
+set(glslang_group "")
+foreach(part glslang glslang-default-resource-limits MachineIndependent GenericCodeGen OGLCompiler OSDependent)
+    find_library(glslang_${part} NAMES lib${part}.a)
+    if(glslang_${part})
+        list(APPEND glslang_group ${glslang_${part}})
+    elseif(part MATCHES "^glslang")
+        message(FATAL_ERROR "lib${part}.a is missing: install glslang-dev")
     endif()
-    list(APPEND glslang_group ${glslang_${part}})
 endforeach()
-target_link_libraries(kestrel_glslang INTERFACE ${glslang_group} -Wl,--end-group)
+target_link_libraries(kestrel_glslang INTERFACE -Wl,--start-group ${glslang_group} -Wl,--end-group)
 
 # EGL is loaded at run time (dlopen), so only its header is needed; the same holds for OSMesa.
 kestrel_require_header(egl EGL/egl.h libegl-dev)

@@ -26,8 +26,8 @@ gl::Handle<gl::deleteTexture> makeArray(std::uint32_t side, size_t layers, Textu
     GLenum error = GL_NO_ERROR;
     {
         const gl::ExpectErrors expect;
-        glTextureStorage3D(name, std::bit_width(side), colour ? GL_SRGB8_ALPHA8 : GL_RGBA8, size, size,
-                           static_cast<GLsizei>(layers));
+        glTextureStorage3D(name, static_cast<GLsizei>(std::bit_width(side)),
+                           colour ? GL_SRGB8_ALPHA8 : GL_RGBA8, size, size, static_cast<GLsizei>(layers));
         error = expect.take();
     }
     if (error != GL_NO_ERROR) return {};

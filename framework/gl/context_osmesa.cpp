@@ -1,6 +1,9 @@
 #include "core/error.h"
 #include "gl/context_backends.h"
 #ifdef KESTREL_HAS_OSMESA
+#ifndef APIENTRY // osmesa.h of Mesa 25 writes it without defining it; on Linux it is empty
+#define APIENTRY
+#endif
 #include <GL/osmesa.h>
 #include <dlfcn.h>
 #include <fmt/format.h>

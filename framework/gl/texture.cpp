@@ -141,8 +141,9 @@ Texture::Texture(const Desc& desc, const std::string& label)
     requireSize(desc, label);
     const Extent& extent = desc.extent;
     const std::uint32_t slices = desc.kind == ResourceKind::Texture3D ? extent.depth : 1;
-    KESTREL_CHECK(desc.mips >= 1 && static_cast<unsigned>(desc.mips) <=
-                                        std::bit_width(std::max({extent.width, extent.height, slices})));
+    // Signed or not: what std::bit_width returns has changed between libraries.
+    const auto mostMips = static_cast<int>(std::bit_width(std::max({extent.width, extent.height, slices})));
+    KESTREL_CHECK(desc.mips >= 1 && desc.mips <= mostMips);
     Name texture = 0;
     glCreateTextures(targetOf(desc.kind), 1, &texture);
     handle_ = Handle<deleteTexture>(texture);

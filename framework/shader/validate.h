@@ -16,7 +16,7 @@ std::vector<Problem> validate(const ComposedProgram& program);
 // Whether glslang can judge the program: none of its stages uses an extension of unknownExtensions().
 bool glslangKnows(const ComposedProgram& program);
 
-// An extension that glslang 12 lacks, and what Kestrel uses it for.
+// An extension that glslang lacks, and what Kestrel uses it for.
 struct UnknownExtension {
     std::string name;
     std::string reason;

@@ -63,7 +63,9 @@ TEST(Condition, StaysUnknownWhereTheOutcomeDependsOnTheUnknown) {
     EXPECT_EQ(evaluate("ABSENT && UNKNOWN"), Truth::No);
     EXPECT_EQ(evaluate("ONE || UNKNOWN"), Truth::Yes);
     EXPECT_EQ(evaluate(std::string(1000, '(')), Truth::Unknown);
-    EXPECT_EQ(evaluate(std::string(1000, '!') + "1"), Truth::Unknown);
+    std::string negated(1000, '!');
+    negated += '1';
+    EXPECT_EQ(evaluate(negated), Truth::Unknown);
 }
 
 // Feeds directives; returns whether the line after each is active.
