@@ -55,6 +55,7 @@ Capabilities readCapabilities(const std::filesystem::path& file) {
                 problems.push_back(
                     {item.where, fmt::format("an extension must be a string, not {}", item.kindName())});
         }
+    fields.optional("kestrel", Json::Kind::Object); // what `--version --gl` says besides
     for (const auto& [key, member] : numbers) readNumber(fields, key, result.*member, problems);
     for (const auto& [key, member] : largeNumbers) readNumber(fields, key, result.*member, problems);
     fields.refuseOthers();

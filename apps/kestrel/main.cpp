@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/version.h"
+#include "machine.h"
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
@@ -87,20 +88,29 @@ int main(int argc, char** argv) {
     app.footer("'kestrel COMMAND --help' tells a command's options.\n"
                "Exit status: 0 done; 1 a measured check failed; 2 bad input or usage; 3 the machine lacks "
                "something.");
-    bool quiet = false, verbose = false;
-    app.add_flag_callback(
+    bool quiet = false, verbose = false, gl = false;
+    Run run, tellVersion;
+    // Before --version, which ends the parsing: options are taken in the order in which they stand here.
+    CLI::Option* withGl =
+        app.add_flag("--gl", gl,
+                     "With --version, for reports of faults: print what this machine's OpenGL offers, and "
+                     "what Kestrel does "
+                     "otherwise for what it lacks, as JSON for 'kestrel check --capabilities'");
+    withGl->needs(app.add_flag_callback(
         "--version,-V",
-        [] {
-            fmt::print("{}", versionText());
+        [&] {
+            tellVersion = [gl] {
+                fmt::print("{}", gl ? machineJson(loadedRegistry()) : versionText());
+                return static_cast<int>(ExitStatus::Done);
+            };
             throw CLI::Success();
         },
-        "Print the version and the parts and backends that are in");
+        "Print the version and the parts and backends that are in"));
     app.add_flag("--quiet,-q", quiet, "Print nothing but errors, and what is asked for as data");
     app.add_flag("--verbose,-v", verbose, "Print what is done");
     app.require_subcommand(1);
     app.fallthrough();
 
-    Run run;
     addRenderCommand(app, run);
     addCheckCommand(app, run);
     addPassesCommand(app, run);
@@ -112,6 +122,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& done) {
+        if (tellVersion) return runGuarded(tellVersion);
         return app.exit(done);
     } catch (const CLI::ParseError& error) {
         const std::string unknown = unknownCommand(app, argc, argv);

@@ -193,6 +193,26 @@ def test_compare_measures_and_holds_limits():
         assert limit.status == 1 and "mse" in limit.err, limit.err
 
 
+def test_a_report_of_a_fault_brings_the_machine_along():
+    with folder() as here:
+        report = done("--version", "--gl").json()
+        own = report["kestrel"]
+        assert own["clock"] == ("finish" if report["software"] else "timer query")
+        assert own["driver"] and own["parts"].startswith("egl")
+        for method, extension in [("interlock", "GL_ARB_fragment_shader_interlock"),
+                                  ("framebuffer_fetch", "GL_EXT_shader_framebuffer_fetch")]:
+            lacks = own["differs"].get("OccupancyMap", {}).get(f"method={method}", [])
+            assert any(extension in sentence for sentence in lacks) == (extension not in report["extensions"])
+        assert "method=exact" not in own["differs"].get("OccupancyMap", {})
+        # Its reader checks graphs against it.
+        file = Path(here) / "report.json"
+        file.write_text(json.dumps(report))
+        there = done("check", RAY_AO, *BLOB, "--capabilities", file, "--json").json()
+        here_ = done("check", RAY_AO, *BLOB, "--json").json()
+        assert there == here_
+    assert "--version" in refused("--gl")[0]
+
+
 def test_usage():
     assert "kestrel 0" in done("--version").out and "backends: egl" in done("--version").out
     for command in ["render", "check", "passes", "dot", "compare", "scene", "sweep"]:
