@@ -30,30 +30,6 @@ Inputs inputsOf(const Network& network, const Node& node) {
     return inputs;
 }
 
-// Declares and completes what follows from the inputs: what is the same as an input, or an input changed in
-// place, has its descriptor; a module without an output entry provides nothing.
-Declaration declare(const Network& network, const Node& node, Demand demand) {
-    if (node.grown != nullptr) demand.setGrown(*node.grown);
-    Declaration declaration = guarded(
-        node.name(), "declare", [&] { return node.instance->declare(network.world, node.inputs, demand); });
-    for (Output& output : declaration.outputs) {
-        const std::string& like = output.same.empty() ? output.updates : output.same;
-        if (!like.empty() && node.inputs.connected(like)) output.desc = node.inputs[like].desc;
-    }
-    // What is seen from elsewhere than the frame's camera changes as that does.
-    for (const Output& output : declaration.outputs)
-        if (output.same.empty() && output.updates.empty() && !output.constant)
-            declaration.depends |= causesOf(output.desc.view);
-    for (const Module& module : declaration.modules)
-        if (findOutput(declaration, module.port) == nullptr) {
-            Output output;
-            output.port = module.port;
-            output.desc = Desc::module(0);
-            declaration.outputs.push_back(std::move(output));
-        }
-    return declaration;
-}
-
 // Of the declared causes those that can come up in this world.
 Causes withinFacts(Causes causes, const SceneFacts& facts) {
     if (!facts.geometryMoves && !facts.geometryDeforms)
@@ -113,6 +89,30 @@ std::string whyImpossible(const Network& network, const Node& node) {
     return {};
 }
 
+} // namespace
+
+Declaration declare(const Network& network, const Node& node, Demand demand) {
+    if (node.grown != nullptr) demand.setGrown(*node.grown);
+    Declaration declaration = guarded(
+        node.name(), "declare", [&] { return node.instance->declare(network.world, node.inputs, demand); });
+    for (Output& output : declaration.outputs) {
+        const std::string& like = output.same.empty() ? output.updates : output.same;
+        if (!like.empty() && node.inputs.connected(like)) output.desc = node.inputs[like].desc;
+    }
+    // What is seen from elsewhere than the frame's camera changes as that does.
+    for (const Output& output : declaration.outputs)
+        if (output.same.empty() && output.updates.empty() && !output.constant)
+            declaration.depends |= causesOf(output.desc.view);
+    for (const Module& module : declaration.modules)
+        if (findOutput(declaration, module.port) == nullptr) {
+            Output output;
+            output.port = module.port;
+            output.desc = Desc::module(0);
+            declaration.outputs.push_back(std::move(output));
+        }
+    return declaration;
+}
+
 void declareForwardWithEveryDemand(Network& network) {
     const Demand everything = Demand::everything();
     for (const int i : network.order) {
@@ -127,6 +127,8 @@ void declareForwardWithEveryDemand(Network& network) {
             (!node.full.problems.empty() || !checkDeclaration(network, i, node.full, everything).empty());
     }
 }
+
+namespace {
 
 // One sweep from the wanted outputs to the sources. Whether any demand changed.
 bool propagateBackward(Network& network) {

@@ -93,6 +93,11 @@ std::vector<int> topologicalOrder(const std::vector<std::set<int>>& before);
 // demand.cpp: declares forward with every demand, then propagates the real demand backward and declares
 // again, until neither changes. Throws InputError with all problems of live passes.
 void settleDemand(Network& network);
+// Its first part: every node that can run declares with every demand (Node::full).
+void declareForwardWithEveryDemand(Network& network);
+// What a node declares with its inputs, and what follows from them: what is the same as an input, or an input
+// changed in place, has its descriptor; a module without an output entry provides nothing.
+Declaration declare(const Network& network, const Node& node, Demand demand);
 // The input ports that a declaration reads, with what it requests of modules.
 void forEachRead(const Node& node, const Declaration& declaration, const Demand& demand,
                  const std::function<void(const std::string& port, Bits requests)>& visit);

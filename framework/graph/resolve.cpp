@@ -2,20 +2,12 @@
 #include "core/check.h"
 #include "graph/muted.h"
 #include "graph/network.h"
+#include "scene/fact_list.h"
 #include <fmt/format.h>
 #include <queue>
 
 namespace kestrel::compiler {
 namespace {
-
-// Facts that promise nothing: whatever a pass may leave out for a scene, it cannot leave out for this one.
-SceneFacts withoutPromises(SceneFacts facts) {
-    facts.hasMasked = facts.hasBlend = facts.hasDoubleSided = facts.hasSingleSided = true;
-    facts.hasTextures = facts.hasNormalMaps = facts.hasVertexColours = true;
-    facts.hasEmission = facts.hasTransmission = facts.hasUnlit = true;
-    facts.geometryMoves = facts.geometryDeforms = facts.cameraMoves = facts.lightsMove = true;
-    return facts;
-}
 
 using Index = std::map<std::string, int, std::less<>>;
 

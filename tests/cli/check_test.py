@@ -225,5 +225,14 @@ def test_usage():
     assert "FILE is missing" in refused("sweep")[0]
 
 
+def test_facts_tell_what_a_scene_leaves_out_of_the_passes_of_a_graph():
+    facts = {fact["fact"]: fact["passes"] for fact in json.loads(done("passes", "--facts", RAY_AO, "--json").out)["facts"]}
+    opaque = {one["pass"]: one for one in facts["no masked or blended material"]}
+    assert opaque["OccupancyMap"]["left_out"] == [{"what": "alpha test", "why": "no material is masked or blended"}]
+    assert "DirectLight" not in {one["pass"] for passes in facts.values() for one in passes}
+    assert "| no triangle |" in done("passes", "--facts", RAY_AO, "--markdown").out
+    assert "did you mean 'ray_ao.json'" in refused("passes", "--facts", "rey_ao.json")[0]
+
+
 if __name__ == "__main__":
     run_tests(globals())
