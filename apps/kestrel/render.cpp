@@ -24,7 +24,7 @@ struct RenderArguments : GraphArguments {
     int frames = 1, every = 0;
     std::uint32_t seed = 0;
     std::optional<double> timeStep;
-    std::string folder, stats, backend = "egl";
+    std::string folder, stats, clock, backend = "egl";
     std::vector<std::string> outputs;
     bool keepAll = false, noSharing = false, checkFinite = false, countIterations = false, still = false;
 };
@@ -154,6 +154,7 @@ int render(const RenderArguments& arguments) {
     options.timeStep = arguments.timeStep;
     options.countIterations = arguments.countIterations;
     options.timing = !arguments.stats.empty();
+    if (!arguments.clock.empty()) options.clock = gl::StepClock::kindFromName(arguments.clock);
     options.finishFrames = true;
     Outputs outputs(arguments, graph);
     options.previews = outputs.ports();
@@ -217,6 +218,11 @@ void addRenderCommand(CLI::App& app, Run& run) {
         ->check(CLI::Range(1, 1'000'000));
     command->add_option("--stats", arguments->stats, "Write times, memory and what was left out as JSON")
         ->check(notEmpty());
+    command->add_option(
+        "--clock", arguments->clock,
+        "What times the steps for --stats: finish, wall clock between two glFinish, or "
+        "timer_query, the GPU's own timestamps, which tell nothing on a CPU renderer; default: what "
+        "measures the work here");
     command->add_flag("--still", arguments->still,
                       "The scene's time stands still at that of the first frame");
     command

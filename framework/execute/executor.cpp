@@ -66,8 +66,6 @@ const Plan& Executor::plan() const {
     return *plan_;
 }
 
-std::string Executor::clockName() const { return std::string(gl::StepClock(capabilities_).name()); }
-
 // ---- frames
 
 void Executor::beginFrame(const FrameScene& frame) {
@@ -81,7 +79,7 @@ void Executor::beginFrame(const FrameScene& frame) {
     data.sceneBounds = glm::vec4(sphere.centre, sphere.radius);
     frameBlock_.upload(std::as_bytes(std::span(&data, 1)));
     if (iterations_.bytes() > 0) iterations_.clear(0);
-    if (options.timing && !clock_) clock_ = std::make_unique<gl::StepClock>(capabilities_);
+    if (options.timing && !clock_) clock_ = std::make_unique<gl::StepClock>(makeClock());
     if (options.timing) clock_->beginFrame(info.index);
 }
 

@@ -23,8 +23,9 @@ struct StepSample {
 };
 
 struct ExecutorOptions {
-    bool timing = false;      // a clock around every step; waits for the GPU at each where the clock needs it
-    bool checkFinite = false; // scans what each pass wrote: FrameReport::bad
+    bool timing = false; // a clock around every step; waits for the GPU at each where the clock needs it
+    std::optional<gl::StepClock::Kind> clock; // absent: what measures the work on this renderer
+    bool checkFinite = false;                 // scans what each pass wrote: FrameReport::bad
     // Counts the iterations of shaders' loops from the next plan on; an Error of MeasureFailed names the
     // steps that make more than a driver surely runs (shader/iterations.h).
     bool countIterations = false;
@@ -59,13 +60,17 @@ public:
     [[nodiscard]] ShaderLibrary& shaders() { return library_; }
     [[nodiscard]] const Programs& programs() const { return programs_; }
     // Which clock the samples come from (gl::StepClock::name).
-    [[nodiscard]] std::string clockName() const;
+    [[nodiscard]] std::string clockName() const { return std::string(makeClock().name()); }
 
     ExecutorOptions options;
     // Where an output's range is known (see finite.h): the table of its type.
     const Registry* registry = nullptr;
 
 private:
+    [[nodiscard]] gl::StepClock makeClock() const {
+        return options.clock ? gl::StepClock(*options.clock) : gl::StepClock(capabilities_);
+    }
+
     struct Kept { // what is compared between the plans
         std::string signature, state;
     };

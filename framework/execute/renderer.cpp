@@ -68,6 +68,7 @@ Renderer::Renderer(Graph graph, const Registry& registry, Scene scene, const Cap
     executor_ = std::make_unique<Executor>(capabilities_, shaderFolders(registry_));
     executor_->registry = &registry_;
     executor_->options = {.timing = options_.timing,
+                          .clock = options_.clock,
                           .checkFinite = options_.checkFinite,
                           .countIterations = options_.countIterations};
     executor_->report().progress = options_.progress;

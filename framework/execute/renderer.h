@@ -20,11 +20,12 @@ struct RenderOptions {
     std::string camera; // empty: the graph's, else Scene::camera
     bool keepAll = false;
     bool shareMemory = true;
-    bool timing = false;          // times every step; waits for the GPU around each where the clock needs it
-    bool finishFrames = false;    // waits for the GPU at the end of each frame, so that its time is true
-    bool checkFinite = false;     // an Error (MeasureFailed) names the bad outputs of every pass of a frame
-    bool keepBad = false;         // with checkFinite: FrameRecord::bad holds them, and there is no error
-    bool countIterations = false; // an Error (MeasureFailed) names loops that some driver would cut short
+    bool timing = false; // times every step; waits for the GPU around each where the clock needs it
+    std::optional<gl::StepClock::Kind> clock; // that times steps; absent: what measures the work here
+    bool finishFrames = false;      // waits for the GPU at the end of each frame, so that its time is true
+    bool checkFinite = false;       // an Error (MeasureFailed) names the bad outputs of every pass of a frame
+    bool keepBad = false;           // with checkFinite: FrameRecord::bad holds them, and there is no error
+    bool countIterations = false;   // an Error (MeasureFailed) names loops that some driver would cut short
     std::optional<double> timeStep; // seconds of the scene from frame to frame; absent: 1 / Scene::frameRate
     std::vector<PortRef> previews;  // ports to make and keep readable besides the graph's outputs
     std::function<void(const std::string& what, double fraction)> progress; // of long work in one step

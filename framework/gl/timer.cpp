@@ -1,10 +1,19 @@
 #include "gl/timer.h"
 #include "core/check.h"
+#include "core/error.h"
 #include "gl/loader.h"
+#include <fmt/format.h>
 
 namespace kestrel::gl {
 
 void deleteQuery(Name name) { glDeleteQueries(1, &name); }
+
+StepClock::Kind StepClock::kindFromName(const std::string& name) {
+    if (name == "finish") return Kind::Finish;
+    if (name == "timer_query") return Kind::TimerQuery;
+    throw InputError(fmt::format("unknown clock '{}'{}; there are finish and timer_query", name,
+                                 didYouMean(name, {"finish", "timer_query"})));
+}
 
 Handle<deleteQuery> StepClock::query() {
     if (!spare_.empty()) {

@@ -3,6 +3,7 @@
 #include "gl/objects.h"
 #include <chrono>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +22,9 @@ public:
         : StepClock(capabilities.software ? Kind::Finish : Kind::TimerQuery) {}
     explicit StepClock(Kind kind)
         : kind_(kind) {}
+
+    // "finish", "timer_query"; InputError with the near name otherwise.
+    static Kind kindFromName(const std::string& name);
 
     [[nodiscard]] Kind kind() const { return kind_; }
     [[nodiscard]] std::string_view name() const { return kind_ == Kind::Finish ? "finish" : "timer query"; }

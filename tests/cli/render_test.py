@@ -50,6 +50,18 @@ def test_stats_have_the_stated_keys():
         assert set(stats["memory"]) == {"transient", "unshared", "persistent"}
 
 
+def test_a_clock_can_be_named():
+    with folder() as out:
+        runs = {}
+        for name in ["finish", "timer_query"]:
+            done("render", RAY_AO, *SMALL, "--frames", 3, "--clock", name, "--out", out, "--stats", f"{out}/s.json")
+            stats = json.loads((Path(out) / "s.json").read_text())
+            assert stats["clock"] == name.replace("_", " ")
+            runs[name] = {item["name"]: item["runs"] for item in stats["passes"]}
+        assert runs["finish"] == runs["timer_query"]
+        assert "'finish'" in refused("render", RAY_AO, *SMALL, "--clock", "finsh", "--out", out)[0]
+
+
 def test_set_moves_an_edge():
     with folder() as out:
         result = done("render", RAY_AO, *SMALL, "--set", "ao.tracer=bvh.tracer", "--out", out)
