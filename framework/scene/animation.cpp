@@ -98,8 +98,7 @@ std::vector<int> parentsFirst(const Scene& scene) {
     for (size_t i = 0; i < scene.nodes.size(); ++i)
         if (scene.nodes[i].parent < 0) order.push_back(static_cast<int>(i));
     for (size_t i = 0; i < order.size(); ++i) {
-        const std::vector<int>& children = scene.nodes[static_cast<size_t>(order[i])].children;
-        order.insert(order.end(), children.begin(), children.end());
+        for (const int child : scene.nodes[static_cast<size_t>(order[i])].children) order.push_back(child);
     }
     return order;
 }
