@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Installs the Debian packages of apps/packages.txt that are missing, saying which; what is not required and not in this
-# release of Debian is left out with a line. Usage: apps/install.sh [test | stage]
+# release of Debian is left out with a line. Usage: apps/install.sh [bundle | test | stage]
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 needs='required|optional'
-[ "${1:-}" = test ] && needs='required|optional|test'
-[ "${1:-}" = stage ] && needs='required|optional|test|stage'
+[ "${1:-}" = bundle ] && needs='required|optional|bundle'
+[ "${1:-}" = test ] && needs='required|optional|bundle|test'
+[ "${1:-}" = stage ] && needs='required|optional|bundle|test|stage'
 
 missing=()
 declare -A need_of

@@ -12,7 +12,7 @@ def stated():
 def test_every_row_has_a_package_and_a_known_need():
     packages = stated()
     assert len(packages) > 10
-    assert set(packages.values()) == {"required", "optional", "test", "stage"}
+    assert set(packages.values()) == {"required", "optional", "bundle", "test", "stage"}
 
 
 def test_cmake_names_only_packages_that_are_stated():
