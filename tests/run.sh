@@ -9,11 +9,19 @@
 #   strict     every file by itself, without precompiled headers, also for names that hide others: it must include what it uses
 #   tidy       clang-tidy over framework/ and passes/, by .clang-tidy
 #   all        the tests and every stage
+#
+# tests/run.sh --driver zink [CTEST ARGUMENT]... runs the GL tests on OpenGL over Vulkan (lavapipe), where both are installed.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 stage=tests
 if [ "${1:-}" = --stage ]; then
     stage=${2:?--stage needs a name}
+    shift 2
+fi
+driver=
+if [ "${1:-}" = --driver ]; then
+    driver=${2:?--driver needs a name: zink}
+    [ "$driver" = zink ] || { echo "tests/run.sh: there is no driver '$driver': zink" >&2; exit 2; }
     shift 2
 fi
 # Half of the time of all tests; the graphs' own tests go through the same passes.
@@ -48,7 +56,14 @@ case "$stage" in
 tests | slow)
     export KESTREL_BUILD=${KESTREL_BUILD:-$root/build}
     "$root/apps/build.sh" test
-    if [ "$stage" = slow ]; then
+    if [ -n "$driver" ]; then
+        export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=zink
+        renderer=$("$KESTREL_BUILD/bin/kestrel" --version --gl | sed -n 's/^  "renderer": "\(.*\)",$/\1/p' || true)
+        [[ $renderer == zink* ]] || { echo "tests/run.sh: no zink over lavapipe here: install mesa-vulkan-drivers" >&2; exit 3; }
+        echo "On $renderer"
+        # OSMesa draws by itself, whatever the driver; with zink it crashes in Mesa 25.
+        run "$KESTREL_BUILD" -L '^(gl|stability)$' -E "[Oo]s[Mm]esa|$slow" "$@"
+    elif [ "$stage" = slow ]; then
         run "$KESTREL_BUILD" -R "$slow" "$@"
     elif [ $# -gt 0 ]; then
         run "$KESTREL_BUILD" "$@"
