@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Installs what is missing and builds into build/ (or $KESTREL_BUILD). Usage: apps/build.sh [test] [CMAKE ARGUMENT]...
+# Installs what is missing and builds into build/ (or $KESTREL_BUILD). Usage: apps/build.sh [test | render] [CMAKE ARGUMENT]...;
+# `render` builds what renders a graph, without the editor.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=${KESTREL_BUILD:-$root/build}
-tests=OFF
+tests=OFF target=all
+[ "${1:-}" = render ] && shift && target=kestrel_app
 if [ "${1:-}" = test ]; then
     tests=ON
     shift
@@ -17,4 +19,4 @@ cmake -S "$root" -B "$build" -G Ninja -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -DKEST
     { cat "$build.log" >&2; exit 2; }
 grep -- '-- Left out' "$build.log" || true
 rm -f "$build.log"
-cmake --build "$build"
+cmake --build "$build" --target $target

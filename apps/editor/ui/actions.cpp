@@ -7,6 +7,15 @@
 #include <GLFW/glfw3.h>
 
 namespace kestrel::edit {
+namespace {
+
+#if IMGUI_VERSION_NUM < 18700
+constexpr ImGuiKey keypadEnter = ImGuiKey_KeyPadEnter;
+#else
+constexpr ImGuiKey keypadEnter = ImGuiKey_KeypadEnter;
+#endif
+
+} // namespace
 
 bool Actions::press(const Chord& key, bool typing) const {
     const bool function = key.key >= GLFW_KEY_F1 && key.key <= GLFW_KEY_F12;
@@ -97,7 +106,7 @@ void Palette::show() {
         if (i == chosen_) ImGui::SetScrollHereY();
     }
     ImGui::EndChild();
-    if (!fresh_ && (pressed(ImGuiKey_Enter) || pressed(ImGuiKey_KeyPadEnter)) && !found.empty())
+    if (!fresh_ && (pressed(ImGuiKey_Enter) || pressed(keypadEnter)) && !found.empty())
         taken = found[chosen_].second;
     const bool leaves = pressed(ImGuiKey_Escape) ||
                         (!fresh_ && !ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows));
