@@ -23,15 +23,23 @@ if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || { echo "apps/install.sh: needs root or sudo to install packages" >&2; exit 3; }
     as_root=(sudo)
 fi
-"${as_root[@]}" apt-get update -qq
-known=()
-for package in "${missing[@]}"; do
-    if [ "${need_of[$package]}" = required ] || apt-cache show "$package" >/dev/null 2>&1; then
-        known+=("$package")
-    else
-        echo "Left out: $package (this release of Debian has none)"
-    fi
-done
+# Of what is missing, what can be had by the lists that apt holds.
+choose() {
+    known=() left=()
+    for package in "${missing[@]}"; do
+        if [ "${need_of[$package]}" = required ] || apt-cache show "$package" >/dev/null 2>&1; then
+            known+=("$package")
+        else
+            left+=("$package")
+        fi
+    done
+}
+choose
+if [ ${#known[@]} -gt 0 ] || ! apt-cache show cmake >/dev/null 2>&1; then
+    "${as_root[@]}" apt-get update -qq
+    choose
+fi
+[ ${#left[@]} -eq 0 ] || echo "Left out: ${left[*]} (this release of Debian has none)"
 [ ${#known[@]} -eq 0 ] && exit 0
 echo "Installing: ${known[*]}"
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${known[@]}" >/dev/null
