@@ -27,7 +27,7 @@ fi
 # Half of the time of all tests; the graphs' own tests go through the same passes.
 slow='ABuffer(Lists|Rays|Hits|Primitives|Construction|Limits|Layers)\.|ShippedErrors\.NoGraph'
 slow+='|ShippedShaders\.CompileUnderEvery|stress_test\.test_what_is_killed|Composite\.(Panes|TheHouse|What|More|Surfaces)'
-slow+='|Hold/path_trace|LeavingOutChangesNoImage/(path_trace|full|transparency|rsm_gather)|Horizons\.WithLayersTheTower'
+slow+='|Hold/path_trace|LeavingOutTest\.ChangesNoImage/(path_trace|full|transparency|rsm_gather)|Horizons\.WithLayersTheTower'
 slow+='|DistanceFields\.EveryVariant'
 sources() { git -C "$root" ls-files '*.cpp' '*.h' | grep -v '^shaders/'; }
 

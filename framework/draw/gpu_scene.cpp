@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "draw/draw_calls.h"
 #include "gl/loader.h"
+#include "scene/least_alpha.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -40,7 +41,7 @@ MaterialRecord recordOf(const Scene& scene, const Material& material, const Scen
     record.transmission = material.transmission;
     record.ior = material.ior;
     const bool masked = material.alphaMode != AlphaMode::Opaque;
-    record.alphaCutoff = masked ? material.alphaCutoff : 0;
+    record.alphaCutoff = masked ? leastAlpha(material) : 0;
     if (masked) record.flags |= shared::materialFlagMasked;
     if (material.alphaMode == AlphaMode::Blend) record.flags |= shared::materialFlagBlend;
     if (material.doubleSided) record.flags |= shared::materialFlagDoubleSided;

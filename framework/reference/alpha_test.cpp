@@ -1,5 +1,6 @@
 #include "reference/alpha_test.h"
 #include "reference/texture_sample.h"
+#include "scene/least_alpha.h"
 #include <limits>
 
 namespace kestrel {
@@ -14,7 +15,7 @@ AlphaTest::AlphaTest(const Geometry& geometry, const Scene& scene, bool blendedA
     for (const Material& material : flattenedMaterials(scene)) {
         const bool kept = material.alphaMode == AlphaMode::Blend && !blendedAsMasked;
         materials_.push_back({material.alphaMode == AlphaMode::Opaque, material.baseColour.a,
-                              kept ? std::numeric_limits<float>::denorm_min() : material.alphaCutoff,
+                              kept ? std::numeric_limits<float>::denorm_min() : leastAlpha(material),
                               material.baseColourTexture});
     }
     for (std::uint32_t triangle = first_; triangle < geometry.triangleCount(); ++triangle) {

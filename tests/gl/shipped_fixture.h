@@ -28,6 +28,18 @@ inline Graph shippedGraph(const std::string& name, const std::vector<std::string
     return graph;
 }
 
+// With few cells and few rays of the references: for what does not depend on them.
+inline Graph lightened(Graph graph, int cells = 32, int samples = 2) {
+    for (const GraphPass& pass : Graph(graph).passes) {
+        const PassType* type = shipped().find(pass.type);
+        if (pass.type == "OccupancyMap")
+            applySetting(graph, shipped(), fmt::format("{}.resolution={}", pass.name, cells));
+        if (type != nullptr && type->property("samples") != nullptr && pass.type.starts_with("Reference"))
+            applySetting(graph, shipped(), fmt::format("{}.samples={}", pass.name, samples));
+    }
+    return graph;
+}
+
 inline std::vector<std::string> shippedGraphNames() {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(shareFolder() / "graphs"))

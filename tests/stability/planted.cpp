@@ -1,4 +1,5 @@
-// Passes that are wrong on purpose, each in one way that a stress case must find (tests/cli/stress_test.py).
+// Passes that are wrong on purpose, each in one way that a stress case must find (tests/cli/stress_test.py),
+// or the check of what leaving out changes (planted_leaving_out_test.cpp).
 #include "execute/commands.h"
 #include "graph/registry.h"
 #include "plugin/plugin.h"
@@ -77,6 +78,23 @@ public:
     }
 };
 
+// It reads the depth of every scene, and says that it needs none of one without blended materials.
+class ClaimsNoNeed final : public FromDepth {
+public:
+    static PassType type() {
+        return typeOf<ClaimsNoNeed>("ClaimsNoNeed", "Where something is, if something is blended");
+    }
+    [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
+                                      const Demand& demand) const override {
+        Declaration declaration = FromDepth::declare(world, inputs, demand);
+        if (world.facts.hasBlend) return declaration;
+        declaration.steps.clear();
+        declaration.outputs.front().constant = glm::vec4(0);
+        declaration.leftOut.push_back({"depth", "no material is blended"});
+        return declaration;
+    }
+};
+
 // The nearest of the first eight fragments of each pixel; those that come later are dropped.
 class DropsFragments final : public Pass {
 public:
@@ -122,7 +140,7 @@ public:
 } // namespace
 
 KESTREL_PLUGIN {
-    for (const PassType& type :
-         {DividesByFar::type(), FixedEpsilon::type(), Hangs::type(), Crashes::type(), DropsFragments::type()})
+    for (const PassType& type : {DividesByFar::type(), FixedEpsilon::type(), Hangs::type(), Crashes::type(),
+                                 DropsFragments::type(), ClaimsNoNeed::type()})
         registry.add(type);
 }

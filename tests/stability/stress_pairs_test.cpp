@@ -8,19 +8,7 @@
 namespace kestrel::test {
 namespace {
 
-// The triangles and samples of a pair, so that all of them take seconds.
-Graph lightened(const std::string& name) {
-    Graph graph = shippedGraph(name);
-    for (const GraphPass& pass : Graph(graph).passes) {
-        const PassType* type = shipped().find(pass.type);
-        if (type == nullptr) continue;
-        if (pass.type.starts_with("Reference") && type->property("samples") != nullptr)
-            applySetting(graph, shipped(), pass.name + ".samples=4");
-        if (pass.type == "OccupancyMap") applySetting(graph, shipped(), pass.name + ".resolution=64");
-    }
-    return graph;
-}
-
+// So that all pairs take seconds.
 std::string lightScene(const std::string& source) {
     return source.starts_with("builtin:")
                ? source.substr(0, source.find('?')) + (source == "builtin:cornell" ? "" : "?detail=0.02")
@@ -54,7 +42,7 @@ struct StressPairs : ShippedTest, ::testing::WithParamInterface<std::string> {};
 TEST_P(StressPairs, Hold) {
     const std::vector<std::string> names = shippedGraphNames();
     const auto index = static_cast<size_t>(std::ranges::find(names, GetParam()) - names.begin());
-    const Graph graph = lightened(GetParam());
+    const Graph graph = lightened(shippedGraph(GetParam()), 64, 4);
     for (const GraphPass& pass : graph.passes)
         if (shipped().find(pass.type) == nullptr) GTEST_SKIP() << "this build has no " << pass.type;
     StressRunner runner(graph, loadScene(lightScene(graph.sceneSource)), shipped(), context().capabilities(),
