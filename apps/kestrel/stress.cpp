@@ -11,6 +11,7 @@
 #include "measure/stress/stress_limits.h"
 #include "measure/stress/stress_workers.h"
 #include "measure/sweep_results.h"
+#include "stress_curve.h"
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,8 +23,10 @@ namespace kestrel {
 namespace {
 
 struct StressArguments : GraphArguments {
-    std::string only, json, page, backend = "egl";
+    std::string only, json, page, backend = "egl", curve, keep;
+    std::vector<double> values;
     double timeout = 120;
+    int frames = 0;
     bool list = false, limits = false, resume = false, keepAll = false, worker = false;
 };
 
@@ -82,6 +85,8 @@ int serve(const StressArguments& arguments) {
     options.size = parseSize(arguments.size);
     options.keepAll = arguments.keepAll;
     if (!arguments.page.empty()) options.pictures = std::filesystem::path(arguments.page) / "pictures";
+    options.keep = arguments.keep;
+    if (arguments.frames > 0) options.frames = arguments.frames;
     const auto context = gl::Context::create({.backend = gl::backendFromName(arguments.backend)});
     return serveStressCases(
         context->capabilities().renderer, [&](std::function<void(const std::string&)> begins) {
@@ -119,22 +124,42 @@ void write(const StressArguments& arguments, const StressRunInfo& info,
         writeFile(std::filesystem::path(arguments.page) / "index.html", stressPage(info, results));
 }
 
-int stress(const StressArguments& arguments) {
+int curve(const StressArguments& arguments, bool sizeGiven) {
+    std::vector<std::string> worker{ownProgram(), "--quiet", "stress"};
+    if (arguments.keepAll) worker.emplace_back("--keep-all");
+    if (arguments.backend != "egl") worker.insert(worker.end(), {"--backend", arguments.backend});
+    static_cast<void>(gl::backendFromName(arguments.backend));
+    return drawCurve(arguments, {.curve = arguments.curve,
+                                 .only = arguments.only,
+                                 .json = arguments.json,
+                                 .page = arguments.page,
+                                 .values = arguments.values,
+                                 .sizeGiven = sizeGiven,
+                                 .frames = arguments.frames,
+                                 .timeout = arguments.timeout,
+                                 .worker = std::move(worker)});
+}
+
+int stress(const StressArguments& arguments, bool sizeGiven) {
     if (arguments.worker) return serve(arguments);
     if (arguments.limits) {
         fmt::print("{}", stressLimitsMarkdown());
         return static_cast<int>(ExitStatus::Done);
     }
-    const std::vector<size_t> chosen = chooseStressCases(arguments.only);
+    const std::vector<size_t> chosen =
+        arguments.curve.empty() ? chooseStressCases(arguments.only) : std::vector<size_t>();
     if (arguments.list) {
         printList(chosen);
         return static_cast<int>(ExitStatus::Done);
     }
+    if (arguments.frames > 0 && arguments.curve.empty())
+        throw InputError("--frames is of --curve: other cases have as many frames as they need");
     if (arguments.graph.empty()) throw InputError("GRAPH is missing: the graph file");
     if (isStream(arguments.graph))
         throw InputError(Location{arguments.graph},
                          "is read once, and each process that runs cases reads the graph: "
                          "give a file");
+    if (!arguments.curve.empty()) return curve(arguments, sizeGiven);
     static_cast<void>(parseSize(arguments.size));
     static_cast<void>(gl::backendFromName(arguments.backend));
     StressRunInfo info;
@@ -190,7 +215,9 @@ void addStressCommand(CLI::App& app, Run& run) {
     arguments->size = "64x36";
     addGraphArguments(*command, *arguments);
     command->get_option("GRAPH")->required(false);
-    command->add_option("--only", arguments->only, "Only this case, or the cases of this kind")
+    command
+        ->add_option("--only", arguments->only,
+                     "Only this case, or the cases of this kind; of a curve only this variant")
         ->check(notEmpty());
     command->add_flag("--list", arguments->list, "Print the cases and what each does");
     command->add_option("--json", arguments->json, "Write the results as JSON, anew after each case")
@@ -206,7 +233,21 @@ void addStressCommand(CLI::App& app, Run& run) {
     command->add_flag("--keep-all", arguments->keepAll, "Leave nothing out in any case");
     command->add_flag("--limits", arguments->limits, "Print the limits of methods as Markdown");
     command->add_option("--backend", arguments->backend, "egl, osmesa or window")->capture_default_str();
-    command->add_flag("--worker", arguments->worker)->group(""); // hidden: how the command starts itself
+    CLI::Option* drawn = command->add_option(
+        "--curve", arguments->curve,
+        "Draws how far each technique is off over decades of one number: scale, place, off_centre, "
+        "far_over_near or layers. GRAPH may be a sweep file: its variants against its reference");
+    drawn->check(notEmpty())->excludes(command->get_option("--resume"));
+    command->add_option("--values", arguments->values, "Of a curve: the numbers, in place of its decades")
+        ->delimiter(',')
+        ->needs(drawn);
+    command
+        ->add_option("--frames", arguments->frames,
+                     "Of a curve: after how many frames pictures are taken; default: the sweep's, else 16")
+        ->check(CLI::Range(1, 100'000));
+    // Hidden: how the command starts itself.
+    command->add_flag("--worker", arguments->worker)->group("");
+    command->add_option("--keep", arguments->keep)->group("");
     command->footer("In every case each value of each output of each pass must be finite and in its port's "
                     "range; scaled, moved "
                     "and turned scenes must give the plain picture, up to 1.25 times the distance of two "
@@ -215,8 +256,11 @@ void addStressCommand(CLI::App& app, Run& run) {
                     "Examples:\n"
                     "  kestrel stress ray_ao.json --scene model.glb --page page\n"
                     "  kestrel stress ray_ao.json --only scale/1e+06\n"
-                    "  kestrel stress my.json --json results.json --resume");
-    command->callback([arguments, &run] { run = [arguments] { return stress(*arguments); }; });
+                    "  kestrel stress my.json --json results.json --resume\n"
+                    "  kestrel stress my_sweep.json --curve scale --page page");
+    command->callback([arguments, command, &run] {
+        run = [arguments, sizeGiven = command->count("--size") > 0] { return stress(*arguments, sizeGiven); };
+    });
 }
 
 } // namespace kestrel

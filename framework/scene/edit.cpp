@@ -79,6 +79,20 @@ void editTriangles(Scene& scene, const SceneEdit& edit) {
     }
 }
 
+void addFarTriangle(Scene& scene, double offCentre, const Size& size) {
+    const auto side = static_cast<float>(1e-3 * size.radius);
+    Primitive primitive;
+    primitive.indices = {0, 1, 2};
+    primitive.positions = {glm::vec3(0), glm::vec3(side, 0, 0), glm::vec3(0, side, 0)};
+    Node node;
+    node.name = "far away";
+    node.translation = size.centre + 2 * offCentre * size.radius * glm::dvec3(0.75, -0.55, 0.37);
+    node.mesh = static_cast<int>(scene.meshes.size());
+    scene.meshes.push_back({"far away", {std::move(primitive)}, {}});
+    scene.roots.push_back(static_cast<int>(scene.nodes.size()));
+    scene.nodes.push_back(std::move(node));
+}
+
 // ---- cameras
 
 void lookAtCentre(Scene& scene, Camera& camera, const glm::dvec3& eye, const Size& size) {
@@ -274,6 +288,7 @@ void editScene(Scene& scene, const SceneEdit& edit) {
             if (camera.path.size() > 1) camera.path.resize(1);
     }
     editTriangles(scene, edit);
+    if (edit.offCentre != 0) addFarTriangle(scene, edit.offCentre, size);
     editMaterials(scene, edit);
     if (edit.dropLights) {
         for (const Light& light : scene.lights)

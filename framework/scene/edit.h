@@ -40,6 +40,9 @@ struct SceneEdit {
     };
     Triangles triangles = Triangles::AsTheyAre;
     int split = 1; // each triangle into so many times so many
+    // One more triangle, a thousandth of the scene's radius wide, so that the middle of all lies so many
+    // radii away from that of the scene: its coordinates as shaders see them are that large. 0: none.
+    double offCentre = 0;
 
     // Every camera. The planes: `nearFactor` times the near plane, then the far plane where it is asked for.
     std::optional<double> fov = {}; // degrees

@@ -91,6 +91,69 @@ def test_dropped_fragments_are_found():
         assert wrong and wrong[0]["port"] == "wrong.result" and wrong[0]["expects"] == "order", cases["layers/100"]
 
 
+def test_what_is_left_out_and_needed_is_found():
+    with folder() as here:
+        cases, _ = stressed(here, planted(here, "ClaimsNoNeed"), "--only", "numbers")
+        wrong = missed(cases["numbers/keep_all"])
+        assert wrong and wrong[0]["port"] == "wrong.result" and wrong[0]["expects"] == "same", cases["numbers/keep_all"]
+        assert not missed(cases["numbers/plain"])
+
+
+def test_a_curve_shows_where_a_technique_breaks():
+    with folder() as here:
+        graph = planted(here, "FixedEpsilon")
+        out = kestrel("stress", graph, "--size", "32x18", "--curve", "scale", "--values", "1e-3,1,1e3", "--frames", 2,
+                      "--page", f"{here}/page", "--json", f"{here}/c.json", env=PLANTED)
+        assert out.status == 0, out.err
+        data = json.loads(Path(here, "c.json").read_text())
+        assert data == json.loads(Path(here, "page", "curve.json").read_text())
+        series = data["plots"][0]["series"]
+        assert [one["name"] for one in series] == ["wrong.result"] and "truth" not in series[0]["plain"]
+        small, same, large = (point["own"] for point in series[0]["points"])
+        assert same == 0 and small > 0.1 and large > 0.1, series
+        assert "wrong.result" in out.out and Path(here, "page", "index.html").exists()
+        pictures = [name for name in files_in(f"{here}/page") if name.endswith(".svg")]
+        assert len(pictures) == 1 and "wrong.result" in Path(here, "page", pictures[0]).read_text()
+
+
+def test_a_curve_of_a_sweep_is_held_against_its_reference():
+    with folder() as here:
+        sweep = Path(here) / "sweep.json"
+        graph = str(SOURCE / "graphs" / "sweeps" / "graphs" / "ao.json")
+        sweep.write_text(json.dumps({
+            "kestrel_sweep": 1, "title": "Three", "size": [32, 18], "frames": 4,
+            "scenes": [{"name": "blob", "source": "builtin:blob?detail=0.02"}],
+            "reference": {"graph": "reference_ao.json", "output": "reference.visibility", "mask": "gbuffer.coverage",
+                          "set": ["reference.samples=64"]},
+            "variants": [{"name": tracer, "graph": graph, "output": "mean.result",
+                          "set": [f"ao.tracer={tracer}.tracer", "bom.resolution=32"]} for tracer in ["roma", "bvh"]]}))
+        done("stress", sweep, "--curve", "off_centre", "--values", "1,1000", "--page", f"{here}/page")
+        plot = json.loads(Path(here, "page", "curve.json").read_text())["plots"][0]
+        roma, bvh = plot["series"]
+        # Cells grow with the distance, triangles do not.
+        assert roma["points"][1]["truth"] > 1.25 * roma["plain"]["truth"], roma
+        assert bvh["points"][1]["truth"] < 1.2 * bvh["plain"]["truth"], bvh
+        assert "--only roma" in roma["command"]
+        done("stress", sweep, "--curve", "off_centre", "--values", "1", "--only", "bvh", "--page", f"{here}/page")
+        assert len(json.loads(Path(here, "page", "curve.json").read_text())["plots"][0]["series"]) == 1
+        assert "is a sweep" in refused("stress", sweep, "--curve", "scale", "--page", f"{here}/p", "--set", "a.b=1")[0]
+
+
+def test_a_crash_is_a_point_of_a_curve():
+    with folder() as here:
+        kestrel("stress", planted(here, "Crashes"), "--scene", "builtin:stress_empty", "--size", "32x18", "--curve",
+                "scale", "--values", "1", "--page", f"{here}/page", env=PLANTED)
+        point = json.loads(Path(here, "page", "curve.json").read_text())["plots"][0]["series"][0]["points"][0]
+        assert point["own"] is None and "signal 11" in point["why"], point
+
+
+def test_bad_curves_are_refused():
+    assert "did you mean 'scale'" in refused("stress", RAY_AO, "--curve", "scael", "--page", "p")[0]
+    assert "needs --page" in refused("stress", RAY_AO, "--curve", "scale")[0]
+    assert "above 0" in refused("stress", RAY_AO, "--curve", "scale", "--page", "p", "--values", "0")[0]
+    assert "--frames is of --curve" in refused("stress", RAY_AO, "--frames", 3)[0]
+
+
 def test_lists_its_cases():
     out = done("stress", "--list").out
     names = [line.split()[0] for line in out.splitlines()[:-1]]

@@ -1,5 +1,6 @@
 // Lights and materials at their ends, and closed rooms in which light is bounded.
 #include "measure/stress/stress_case.h"
+#include "shared/ggx.h"
 #include <cmath>
 #include <fmt/format.h>
 
@@ -7,8 +8,12 @@ namespace kestrel {
 namespace {
 
 // What a point of a closed room of radiance `emission` and albedo `albedo` sends out after one bounce at
-// most: E (1 - rho^(n + 1)) / (1 - rho) with n = 1.
-double closedRoom(double emission, double albedo) { return emission * (1 + albedo); }
+// most: E (1 - rho^(n + 1)) / (1 - rho) with n = 1. Besides its albedo a surface reflects as a dielectric
+// does, over the hemisphere the mean of Schlick's F0 + (1 - F0) (1 - cos)^5, which is F0 + (1 - F0) / 21.
+double closedRoom(double emission, double albedo) {
+    const double f0 = double{shared::dielectricReflectance}, mirrored = f0 + (1 - f0) / 21;
+    return emission * (1 + albedo + (1 - albedo) * mirrored);
+}
 
 } // namespace
 

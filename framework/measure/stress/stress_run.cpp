@@ -50,6 +50,10 @@ std::string fileName(std::string text) {
 
 } // namespace
 
+std::string keptPictureName(const std::string& name, const std::string& port) {
+    return fileName(name) + "." + port + ".exr";
+}
+
 StressRunner::StressRunner(Graph graph, Scene scene, const Registry& registry,
                            const Capabilities& capabilities, StressOptions options)
     : graph_(std::move(graph))
@@ -133,7 +137,8 @@ StressRunner::Rendered StressRunner::render(const StressCase& one, const SceneEd
     if (recovers && (plain || one.edit.blinkFrames == 0)) renderer.setPaused(true);
 
     std::set<std::string> bad;
-    const int frames = recovers && plain ? one.frames / 2 : one.frames;
+    const int all = options_.frames.value_or(one.frames);
+    const int frames = recovers && plain ? all / 2 : all;
     for (int i = 0; i < frames; ++i) {
         if (!plain)
             for (const StressEvent& event : one.events)
@@ -287,6 +292,9 @@ StressResult StressRunner::run(const StressCase& one) {
     try {
         const Rendered rendered = render(one, one.edit, one.seed, false);
         addFinite(result, rendered);
+        if (!options_.keep.empty())
+            for (const auto& [port, image] : rendered.pictures)
+                writeImage(options_.keep / keptPictureName(one.name, port), image, Encoding::Linear);
         if (one.expects == StressExpects::EnergyHeld) addEnergy(result, one, rendered);
         const bool compares = one.expects == StressExpects::Same || one.expects == StressExpects::Mirrored ||
                               one.expects == StressExpects::Recovers;

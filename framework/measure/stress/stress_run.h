@@ -4,6 +4,7 @@
 #include "measure/stress/stress_distance.h"
 #include "measure/stress/stress_results.h"
 #include <functional>
+#include <optional>
 
 namespace kestrel {
 
@@ -11,8 +12,13 @@ struct StressOptions {
     Extent size{64, 36, 1};
     bool keepAll = false;                // of every case
     std::filesystem::path pictures = {}; // folder for pictures of what is missed; empty: none are written
+    std::filesystem::path keep = {};     // folder for the outputs' pictures of every case; empty: none are
+    std::optional<int> frames = {};      // of every case, in place of its own
     std::function<void(const std::string& step)> begins = {}; // told before each step runs
 };
+
+// The file in StressOptions::keep of a case's picture of "pass.port".
+[[nodiscard]] std::string keptPictureName(const std::string& name, const std::string& port);
 
 class StressRunner {
 public:

@@ -1,7 +1,9 @@
 #include "measure/stress/stress_workers.h"
+#include "measure/stress/curve.h"
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
+#include <optional>
 #include <unistd.h>
 
 namespace kestrel {
@@ -20,10 +22,10 @@ void tell(const std::string& line) {
     }
 }
 
-const StressCase* caseOf(const std::string& name) {
+std::optional<StressCase> caseOf(const std::string& name) {
     for (const StressCase& one : stressCases())
-        if (one.name == name) return &one;
-    return nullptr;
+        if (one.name == name) return one;
+    return curveCase(name);
 }
 
 std::string oneLine(std::string text) {
@@ -112,9 +114,9 @@ int serveStressCases(const std::string& renderer, const MakeStressRunner& makeRu
             name += c;
             continue;
         }
-        const StressCase* one = caseOf(name);
+        const std::optional<StressCase> one = caseOf(name);
         name.clear();
-        if (one == nullptr) return static_cast<int>(ExitStatus::BadInput);
+        if (!one) return static_cast<int>(ExitStatus::BadInput);
         tell("result " + stressResultText(runner.run(*one)));
     }
     return static_cast<int>(ExitStatus::Done);
