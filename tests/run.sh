@@ -6,6 +6,7 @@
 #   slow       the tests that take long: every combination of what a pass can be, whole lists against Embree
 #   format     every C++ file stands as .clang-format has it
 #   sanitize   the tests that need no GL, under the address and undefined-behaviour sanitizers
+#   fuzz       what reads files, by libFuzzer under both sanitizers: --stage fuzz [SECONDS [TARGET]...], 10 s a target
 #   strict     every file by itself, without precompiled headers, also for names that hide others: it must include what it uses
 #   tidy       clang-tidy over framework/ and passes/, by .clang-tidy
 #   all        the tests and every stage
@@ -26,7 +27,7 @@ if [ "${1:-}" = --driver ]; then
 fi
 # Half of the time of all tests; the graphs' own tests go through the same passes.
 slow='ABuffer(Lists|Rays|Hits|Primitives|Construction|Limits|Layers)\.|ShippedErrors\.NoGraph'
-slow+='|ShippedShaders\.CompileUnderEvery|stress_test\.test_what_is_killed|Composite\.(Panes|TheHouse|What|More|Surfaces)'
+slow+='|ShippedShaders\.CompileUnderEvery|stress_test\.test_what_is_killed|that_is_killed|ShippedMemory|Composite\.(Panes|TheHouse|What|More|Surfaces)'
 slow+='|Hold/path_trace|LeavingOutTest\.ChangesNoImage/(path_trace|full|transparency|rsm_gather)|Horizons\.WithLayersTheTower'
 slow+='|DistanceFields\.EveryVariant'
 sources() { git -C "$root" ls-files '*.cpp' '*.h' | grep -v '^shaders/'; }
@@ -88,9 +89,15 @@ sanitize)
         printf '%s: %s\n' "$(basename "$1")" "$(grep -a '^\[  PASSED' <<<"$said")"
     }
     export -f check
-    export UBSAN_OPTIONS=print_stacktrace=1
+    export UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$root/tests/sanitize.supp:print_suppressions=0
     printf '%s\0' "${tests[@]/#/$root/build-sanitize/bin/test_}" |
         xargs -0 -P "$(nproc)" -I PROGRAM bash -c 'check "$@"' check PROGRAM "$@"
+    ;;
+fuzz)
+    "$root/apps/install.sh" stage
+    build "$root/build-fuzz" -DKESTREL_CONFIG=fuzz -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
+        "-DKESTREL_FOLDERS=core;image;scene;shader;graph" -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -- fuzz
+    "$root/tests/fuzz/fuzz.sh" "$root/build-fuzz" "$@"
     ;;
 strict)
     build "$root/build-strict" -DKESTREL_UNITY=OFF -DKESTREL_PCH=OFF -- kestrel_stamp kestrel_glad
@@ -106,13 +113,13 @@ tidy)
     ;;
 all)
     "$0"
-    for each in slow format tidy strict sanitize; do
+    for each in slow format tidy strict sanitize fuzz; do
         echo "== $each"
         "$0" --stage "$each"
     done
     ;;
 *)
-    echo "tests/run.sh: there is no stage '$stage': slow, format, tidy, strict, sanitize, all" >&2
+    echo "tests/run.sh: there is no stage '$stage': slow, format, tidy, strict, sanitize, fuzz, all" >&2
     exit 2
     ;;
 esac
