@@ -1,9 +1,11 @@
 #include "core/json.h"
+#include "core/problems.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <unordered_map>
 
 namespace kestrel {
 namespace {
@@ -12,6 +14,7 @@ using nlohmann::ordered_json;
 
 constexpr size_t maxJsonBytes = size_t{16} << 20;
 constexpr size_t maxNesting = 64;
+constexpr size_t maxJsonValues = 1'000'000; // each takes a hundred times the two bytes that it has in a file
 
 // nlohmann-json 3.11 knows no positions. Its SAX events come in the order of the tokens, so a cursor that
 // walks the text in step with the events knows where each token stands.
@@ -107,13 +110,11 @@ public:
     bool end_array() override { return close(); }
     bool key(string_t& value) override {
         const Location where = cursor_.next();
-        Json& object = *open_.back();
-        const auto same = std::find_if(object.members.begin(), object.members.end(),
-                                       [&](const Json::Member& member) { return member.key == value; });
-        if (same != object.members.end())
+        const auto [same, fresh] = keys_.back().try_emplace(value, where.line);
+        if (!fresh)
             throw InputError(where, fmt::format("the key '{}' stands twice in one object (first on line {})",
-                                                value, same->where.line));
-        object.members.push_back({value, where, {}});
+                                                value, same->second));
+        open_.back()->members.push_back({value, where, {}});
         cursor_.passString();
         return true;
     }
@@ -135,6 +136,8 @@ public:
 private:
     Json& put(Json::Kind kind) {
         const Location where = cursor_.next();
+        if (++values_ > maxJsonValues)
+            throw InputError(where, fmt::format("has more than {} values of JSON", maxJsonValues));
         Json* target = &root;
         if (!open_.empty()) {
             Json& parent = *open_.back();
@@ -156,6 +159,7 @@ private:
         if (open_.size() >= maxNesting)
             throw InputError(json.where, fmt::format("nested deeper than {} levels", maxNesting));
         open_.push_back(&json);
+        keys_.emplace_back();
         cursor_.passCharacter();
         return true;
     }
@@ -163,10 +167,13 @@ private:
         cursor_.next();
         cursor_.passCharacter();
         open_.pop_back();
+        keys_.pop_back();
         return true;
     }
 
     Cursor cursor_;
+    size_t values_ = 0;
+    std::vector<std::unordered_map<std::string, int>> keys_; // of the open containers, and their lines
     std::vector<Json*> open_; // stable: a container's vector does not grow while a child of it is open
 };
 
@@ -218,8 +225,8 @@ JsonFields::JsonFields(const Json& object, std::string what, std::vector<Problem
     , what_(std::move(what))
     , problems_(problems) {
     if (object.kind != Json::Kind::Object)
-        problems_.push_back(
-            {object.where, fmt::format("{} must be an object, not {}", what_, object.kindName())});
+        noteProblem(problems_, object.where,
+                    fmt::format("{} must be an object, not {}", what_, object.kindName()));
 }
 
 const Json* JsonFields::optional(std::string_view key) {
@@ -230,7 +237,7 @@ const Json* JsonFields::optional(std::string_view key) {
 const Json* JsonFields::required(std::string_view key) {
     const Json* value = optional(key);
     if (value == nullptr && object_.kind == Json::Kind::Object)
-        problems_.push_back({object_.where, fmt::format("{} needs '{}'", what_, key)});
+        noteProblem(problems_, object_.where, fmt::format("{} needs '{}'", what_, key));
     return value;
 }
 
@@ -240,8 +247,9 @@ const Json* JsonFields::checked(const Json* value, std::string_view key, Json::K
         return value;
     Json wanted;
     wanted.kind = kind;
-    problems_.push_back({value->where, fmt::format("'{}' of {} must be {}, not {}", key, what_,
-                                                   wanted.kindName(), value->kindName())});
+    noteProblem(
+        problems_, value->where,
+        fmt::format("'{}' of {} must be {}, not {}", key, what_, wanted.kindName(), value->kindName()));
     return nullptr;
 }
 
@@ -255,8 +263,9 @@ const Json* JsonFields::optional(std::string_view key, Json::Kind kind) {
 void JsonFields::refuseOthers() {
     for (const Json::Member& member : object_.members)
         if (std::find(known_.begin(), known_.end(), member.key) == known_.end())
-            problems_.push_back({member.where, fmt::format("{} has no key '{}'{}", what_, member.key,
-                                                           didYouMean(member.key, known_))});
+            noteProblem(
+                problems_, member.where,
+                fmt::format("{} has no key '{}'{}", what_, member.key, didYouMean(member.key, known_)));
 }
 
 } // namespace kestrel

@@ -24,9 +24,9 @@ struct Json {
     std::vector<Json> items;  // valid for Array
     std::vector<Member> members;
 
-    // Parses UTF-8 text; `file` is only named in locations. Limits: 16 MiB, nesting 64. Throws InputError
-    // with the place for text that is not JSON, a number beyond the range of double, and for a key that
-    // occurs twice in one object.
+    // Parses UTF-8 text; `file` is only named in locations. Limits: 16 MiB, a million values, nesting 64.
+    // Throws InputError with the place for text that is not JSON, a number beyond the range of double, and
+    // for a key that occurs twice in one object.
     static Json parse(std::string_view text, const std::string& file);
 
     [[nodiscard]] bool isNumber() const { return kind == Kind::Int || kind == Kind::Float; }

@@ -1,10 +1,13 @@
 // Reading a graph file: its form only; names are resolved by validate().
 #include "core/files.h"
 #include "core/json.h"
+#include "core/problems.h"
 #include "graph/graph.h"
 #include "scene/setup_keys.h"
 #include <algorithm>
 #include <fmt/format.h>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace kestrel {
 namespace {
@@ -46,7 +49,7 @@ public:
 
 private:
     void note(const Location& where, std::string message) {
-        problems_.push_back({where, std::move(message)});
+        noteProblem(problems_, where, std::move(message));
     }
 
     std::string text(const Json* value) {
@@ -86,6 +89,7 @@ private:
                                  member.key));
             if (auto value = readValue(member.value, fmt::format("variable '{}'", member.key))) {
                 variable.value = std::move(*value);
+                variables_.emplace(variable.name, graph.variables.size());
                 graph.variables.push_back(std::move(variable));
             }
         }
@@ -111,7 +115,7 @@ private:
                 if (pass.kind != Kind::String)
                     note(pass.where,
                          fmt::format("a pass of a frame must be a string, not {}", pass.kindName()));
-                else if (graph.find(pass.text) == nullptr)
+                else if (!passes_.contains(pass.text))
                     note(pass.where, fmt::format("there is no pass '{}' (in frame '{}'){}", pass.text,
                                                  made.title, didYouMean(pass.text, passNames(graph))));
                 else
@@ -144,6 +148,7 @@ private:
             return;
         }
         for (const Json::Member& member : passes.members) readPass(member, graph);
+        for (const GraphPass& pass : graph.passes) passes_.insert(pass.name);
     }
 
     void readPass(const Json::Member& member, Graph& graph) {
@@ -180,9 +185,9 @@ private:
         const Json* name = fields.required("variable", Kind::String);
         fields.refuseOthers();
         if (name == nullptr) return;
-        if (const GraphVariable* variable = graph.variable(name->text)) {
-            pass.properties.emplace_back(property.key, variable->value);
-            pass.bound[property.key] = variable->name;
+        if (const auto found = variables_.find(name->text); found != variables_.end()) {
+            pass.properties.emplace_back(property.key, graph.variables[found->second].value);
+            pass.bound[property.key] = found->first;
             return;
         }
         std::vector<std::string> names;
@@ -243,6 +248,8 @@ private:
     }
 
     std::vector<Problem>& problems_;
+    std::unordered_set<std::string> passes_;            // names
+    std::unordered_map<std::string, size_t> variables_; // name -> index
 };
 
 } // namespace

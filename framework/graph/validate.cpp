@@ -1,4 +1,5 @@
 // What is wrong with a graph against the table of pass types.
+#include "core/problems.h"
 #include "graph/graph.h"
 #include <algorithm>
 #include <fmt/format.h>
@@ -18,12 +19,11 @@ public:
     }
 
     std::vector<Problem> run() {
-        for (const GraphPass& pass : graph_.passes) checkPass(pass);
-        for (const GraphEdge& edge : graph_.edges) checkEdge(edge);
-        checkRequiredInputs();
-        checkCycles();
-        std::map<PortRef, Location> seen;
-        for (const GraphOutput& output : graph_.outputs) checkOutput(output, seen);
+        try {
+            checkAll();
+        } catch (const InputError& tooMany) {
+            problems_ = tooMany.problems();
+        }
         std::stable_sort(problems_.begin(), problems_.end(), [](const Problem& a, const Problem& b) {
             return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
         });
@@ -31,8 +31,16 @@ public:
     }
 
 private:
+    void checkAll() {
+        for (const GraphPass& pass : graph_.passes) checkPass(pass);
+        for (const GraphEdge& edge : graph_.edges) checkEdge(edge);
+        checkRequiredInputs();
+        checkCycles();
+        std::map<PortRef, Location> seen;
+        for (const GraphOutput& output : graph_.outputs) checkOutput(output, seen);
+    }
     void note(const Location& where, std::string message) {
-        problems_.push_back({where, std::move(message)});
+        noteProblem(problems_, where, std::move(message));
     }
     [[nodiscard]] const GraphPass* find(const std::string& name) const {
         const auto found = byName_.find(name);
@@ -202,8 +210,12 @@ private:
     }
 
     void noteCycle(const GraphEdge& closing, const std::vector<const GraphEdge*>& path, size_t begin) {
+        constexpr size_t shown = 100; // of the passes in a row
         std::string text;
-        for (size_t i = begin; i < path.size(); ++i) text += path[i]->from.text() + " -> ";
+        for (size_t i = begin; i < path.size(); ++i) {
+            if (i - begin < shown) text += path[i]->from.text() + " -> ";
+            if (i - begin == shown) text += fmt::format("({} more) -> ", path.size() - i);
+        }
         text += closing.from.text() + " -> ";
         text += begin < path.size() ? path[begin]->from.text() : closing.from.text();
         note(closing.where, "the edges form a cycle: " + text);

@@ -18,7 +18,7 @@ std::optional<std::string> axisScalar(const Json& json) {
     case Json::Kind::Float:
         return numberText(json.number);
     case Json::Kind::String:
-        return json.text;
+        return json.text.size() <= maxSweepName ? std::optional(json.text) : std::nullopt;
     default:
         return std::nullopt;
     }
@@ -38,10 +38,13 @@ void readAxisValue(SweepReading& reading, const Json& json, const std::vector<st
     } else if (json.kind == Json::Kind::Object) {
         sweepAxisValueKeys().read(reading, json, fmt::format("a value of the axis '{}'", axis.name), value);
     } else {
-        reading.note(json.where,
-                     fmt::format("a value of the axis '{}' must be a number, a text, true or false, or an "
-                                 "object with 'label' and 'set', not {}",
-                                 axis.name, json.kindName()));
+        reading.note(
+            json.where,
+            json.kind == Json::Kind::String
+                ? fmt::format("a value of {} bytes; at most {} are read", json.text.size(), maxSweepName)
+                : fmt::format("a value of the axis '{}' must be a number, a text, true or false, or an "
+                              "object with 'label' and 'set', not {}",
+                              axis.name, json.kindName()));
         return;
     }
     if (std::ranges::any_of(axis.values, [&](const auto& other) { return other.label == value.label; }))
@@ -86,9 +89,12 @@ const SweepAxis* requireSweepAxis(SweepReading& reading, const Json& json, const
 }
 
 void readSweepAxes(SweepReading& reading, const Json& json, SweepVariant& variant) {
+    if (!reading.allows(json.where, json.members.size(), maxSweepAxes, "axes")) return;
     for (const Json::Member& member : json.members) {
         SweepAxis axis;
         axis.name = member.key;
+        if (!reading.allows(member.where, axis.name.size(), maxSweepName, "bytes in the name of an axis"))
+            continue;
         std::vector<std::string> templates;
         const Json* values = &member.value;
         if (member.value.kind == Json::Kind::Array) {
@@ -107,7 +113,8 @@ void readSweepAxes(SweepReading& reading, const Json& json, SweepVariant& varian
             }
             values = form.values;
         }
-        if (values != nullptr)
+        if (values != nullptr &&
+            reading.allows(values->where, values->items.size(), maxSweepPoints, "values of an axis"))
             for (const Json& item : values->items) readAxisValue(reading, item, templates, axis);
         if (axis.values.empty())
             reading.note(member.value.where, fmt::format("the axis '{}' has no values", axis.name));
@@ -116,6 +123,7 @@ void readSweepAxes(SweepReading& reading, const Json& json, SweepVariant& varian
 }
 
 void readSweepExclusions(SweepReading& reading, const Json& json, SweepVariant& variant) {
+    if (!reading.allows(json.where, json.items.size(), maxSweepExclusions, "exclusions")) return;
     for (const Json& item : json.items) readExclusion(reading, item, variant);
 }
 

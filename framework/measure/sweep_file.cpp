@@ -102,8 +102,12 @@ std::optional<PortRef> readSweepPort(SweepReading& reading, const Json& json, co
 
 std::vector<SweepSetting> readSweepSettings(SweepReading& reading, const Json& json) {
     std::vector<SweepSetting> settings;
+    if (!reading.allows(json.where, json.items.size(), maxSweepSettings, "settings")) return settings;
     for (const Json& item : json.items) {
-        if (item.kind == Json::Kind::String)
+        if (item.kind == Json::Kind::String && item.text.size() > maxSweepSetting)
+            reading.note(item.where, fmt::format("a setting of {} bytes; at most {} are read",
+                                                 item.text.size(), maxSweepSetting));
+        else if (item.kind == Json::Kind::String)
             settings.push_back({item.text, item.where});
         else
             reading.note(item.where, fmt::format("a setting must be a string as '--set' takes it, not {}",
@@ -126,6 +130,7 @@ void readSweepSize(SweepReading& reading, const Json& size, Sweep& sweep) {
 }
 
 void readSweepTimes(SweepReading& reading, const Json& times, Sweep& sweep) {
+    if (!reading.allows(times.where, times.members.size(), maxSweepTimes, "times")) return;
     for (const Json::Member& member : times.members) {
         SweepTime time{member.key, {}};
         if (member.value.kind != Json::Kind::Array || member.value.items.empty())
@@ -149,6 +154,7 @@ void readSweepTimes(SweepReading& reading, const Json& times, Sweep& sweep) {
 
 void readSweepScenes(SweepReading& reading, const Json& scenes, Sweep& sweep) {
     if (scenes.items.empty()) reading.note(scenes.where, "'scenes' is empty: there is nothing to measure on");
+    if (!reading.allows(scenes.where, scenes.items.size(), maxSweepScenes, "scenes")) return;
     for (const Json& item : scenes.items) {
         SweepScene scene;
         scene.where = item.where;
@@ -179,6 +185,7 @@ void readSweepScenes(SweepReading& reading, const Json& scenes, Sweep& sweep) {
 void readSweepVariants(SweepReading& reading, const Json& variants, Sweep&) {
     if (variants.items.empty())
         reading.note(variants.where, "'variants' is empty: there is nothing to measure");
+    if (!reading.allows(variants.where, variants.items.size(), maxSweepPoints, "variants")) return;
     for (const Json& item : variants.items) {
         if (item.kind == Json::Kind::Object)
             readVariant(reading, item);
@@ -193,7 +200,11 @@ Sweep parseSweep(std::string_view text, const std::string& file) {
     sweep.file = file;
     sweep.name = sweep.title = sweep.file.stem().string();
     SweepReading reading{problems, sweep, {}};
-    sweepKeys().read(reading, Json::parse(text, file), "the sweep", sweep);
+    try {
+        sweepKeys().read(reading, Json::parse(text, file), "the sweep", sweep);
+    } catch (const InputError& tooMany) {
+        problems = tooMany.problems();
+    }
     std::ranges::stable_sort(problems, {}, [](const Problem& problem) {
         return std::pair(problem.where.line, problem.where.column);
     });

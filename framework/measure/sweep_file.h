@@ -11,8 +11,13 @@
 namespace kestrel {
 
 // Bounds on what a file may ask for.
-inline constexpr size_t maxSweepPoints = 10'000;
-inline constexpr size_t maxSweepName = 200; // bytes: names become keys, labels and file names
+inline constexpr size_t maxSweepPoints = 10'000; // also of variants and of an axis's values
+inline constexpr size_t maxSweepTried = 100'000; // combinations of axes, those that are excluded too
+inline constexpr size_t maxSweepScenes = 1'000, maxSweepAxes = 64, maxSweepExclusions = 1'000,
+                        maxSweepSettings = 1'000, maxSweepTimes = 1'000;
+inline constexpr size_t maxSweepName = 200;               // bytes: names become keys, labels and file names
+inline constexpr size_t maxSweepSetting = 1'000;          // bytes of one setting
+inline constexpr size_t maxSweepText = size_t{256} << 20; // bytes of all points' settings and names
 inline constexpr int maxSweepFrames = 100'000, maxSweepRepeats = 10'000, maxSweepSide = 16'384,
                      maxSweepSeed = 1 << 30;
 
@@ -134,7 +139,7 @@ struct SweepPoint {
 std::string sweepSlug(const std::string& name, std::set<std::string>& taken);
 
 // In the order of the file; the last axis changes fastest. Throws InputError where a sweep has more than
-// maxSweepPoints, or where two points would have one name.
+// maxSweepPoints, maxSweepTried or maxSweepText, or where two points would have one name.
 std::vector<SweepPoint> expandSweep(const Sweep& sweep);
 
 // What is measured together, so that its times compare: one scene with all points of one plot.

@@ -2,8 +2,10 @@
 // come from here.
 #pragma once
 #include "core/json.h"
+#include "core/problems.h"
 #include "measure/sweep_file.h"
 #include <algorithm>
+#include <fmt/format.h>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +19,14 @@ struct SweepReading {
     Sweep& sweep;
     std::set<std::string> sceneSlugs;
 
-    void note(const Location& where, std::string message) { problems.push_back({where, std::move(message)}); }
+    void note(const Location& where, std::string message) {
+        noteProblem(problems, where, std::move(message));
+    }
+    // Whether a list is short enough to be read; notes it if not.
+    bool allows(const Location& where, std::size_t count, std::size_t most, const char* what) {
+        if (count > most) note(where, fmt::format("{} {}; at most {} are read", count, what, most));
+        return count <= most;
+    }
 };
 
 // The values that several keys share. Each notes what is wrong, and gives nothing or the value before then.

@@ -54,17 +54,41 @@ SweepPoint pointOf(const Sweep& sweep, const SweepVariant& variant, const Choice
     return point;
 }
 
-// Adds the points of one variant; false once there are too many.
-bool addPoints(const Sweep& sweep, const SweepVariant& variant, std::vector<SweepPoint>& points) {
+// What an expansion has come to so far.
+struct Expansion {
+    std::vector<SweepPoint> points;
+    size_t tried = 0, text = 0;
+};
+
+[[noreturn]] void failTooMuch(const SweepVariant& variant, size_t most, const char* what) {
+    throw InputError(variant.where,
+                     fmt::format("the axes multiply to more than {} {} in all; at most that many are {}",
+                                 most, what, most == maxSweepPoints ? "measured" : "read"));
+}
+
+size_t textOf(const SweepPoint& point) {
+    size_t bytes = point.name.size() + point.series.size();
+    for (const SweepSetting& setting : point.settings) bytes += sizeof(SweepSetting) + setting.text.size();
+    return bytes;
+}
+
+// Adds the points of one variant.
+void addPoints(const Sweep& sweep, const SweepVariant& variant, Expansion& made) {
     std::vector<size_t> counter(variant.axes.size(), 0);
     while (true) {
+        if (++made.tried > maxSweepTried)
+            failTooMuch(variant, maxSweepTried, "combinations, excluded ones too,");
         Choice choice;
         for (size_t i = 0; i < counter.size(); ++i) choice.push_back(&variant.axes[i].values[counter[i]]);
-        if (!excluded(variant, choice)) points.push_back(pointOf(sweep, variant, choice));
-        if (points.size() > maxSweepPoints) return false;
+        if (!excluded(variant, choice)) {
+            made.points.push_back(pointOf(sweep, variant, choice));
+            made.text += textOf(made.points.back());
+        }
+        if (made.points.size() > maxSweepPoints) failTooMuch(variant, maxSweepPoints, "points");
+        if (made.text > maxSweepText) failTooMuch(variant, maxSweepText, "bytes of settings");
         size_t axis = counter.size();
         while (axis > 0 && ++counter[axis - 1] == variant.axes[axis - 1].values.size()) counter[--axis] = 0;
-        if (axis == 0) return true;
+        if (axis == 0) return;
     }
 }
 
@@ -90,12 +114,9 @@ std::string sweepSlug(const std::string& name, std::set<std::string>& taken) {
 }
 
 std::vector<SweepPoint> expandSweep(const Sweep& sweep) {
-    std::vector<SweepPoint> points;
-    for (const SweepVariant& variant : sweep.variants)
-        if (!addPoints(sweep, variant, points))
-            throw InputError(variant.where, fmt::format("the axes multiply to more than {} points in all; at "
-                                                        "most that many are measured",
-                                                        maxSweepPoints));
+    Expansion made;
+    for (const SweepVariant& variant : sweep.variants) addPoints(sweep, variant, made);
+    std::vector<SweepPoint>& points = made.points;
     std::set<std::string> names, slugs{"reference"};
     std::vector<Problem> problems;
     for (SweepPoint& point : points) {
@@ -107,7 +128,7 @@ std::vector<SweepPoint> expandSweep(const Sweep& sweep) {
         problems.push_back(
             {Location{sweep.file.string()}, "everything is excluded: nothing is left to measure"});
     if (!problems.empty()) throw InputError(std::move(problems));
-    return points;
+    return std::move(points);
 }
 
 std::vector<SweepUnit> sweepUnits(const Sweep& sweep, const std::vector<SweepPoint>& points) {

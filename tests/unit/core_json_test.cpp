@@ -1,5 +1,8 @@
 #include "core/json.h"
+#include "core/problems.h"
 #include "support/message.h"
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace kestrel {
@@ -73,6 +76,53 @@ TEST(Json, WholeNumbersAreWhole) {
     EXPECT_EQ(fields.required("b", Json::Kind::Int), nullptr);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].text(), "f.json:1:19: 'b' of it must be a whole number, not a number");
+}
+
+std::string repeated(size_t count, const std::string& text, const std::string& joint = ",") {
+    std::string all;
+    for (size_t i = 0; i < count; ++i) all += (i > 0 ? joint : "") + text;
+    return all;
+}
+
+// A file of the greatest length that is read must neither take gigabytes nor hours.
+TEST(Json, WhatIsTooMuchIsToldWithItsLimit) {
+    EXPECT_EQ(parseMessage("[" + repeated(1'000'000, "0") + "]"),
+              "f.json:1:2000000: has more than 1000000 values of JSON");
+    EXPECT_EQ(Json::parse("[" + repeated(999'999, "0") + "]", "f.json").items.size(), 999'999u);
+    EXPECT_EQ(parseMessage(std::string(17 << 20, ' ')),
+              "f.json: has 17825792 bytes of JSON; at most 16777216 are read");
+    std::string keys = "{";
+    for (int i = 0; i < 300'000; ++i) keys += fmt::format("{}\"{}\":0", i > 0 ? "," : "", i);
+    EXPECT_EQ(parseMessage(keys + "}"), "no error");
+    EXPECT_THAT(parseMessage(keys + ",\n\"7\":0}"),
+                testing::HasSubstr("f.json:2:1: the key '7' stands twice in one object (first on line 1)"));
+}
+
+TEST(Json, MistakesWithoutEndAreToldToAnEnd) {
+    std::string keys = "{";
+    for (int i = 0; i < 2'000; ++i) keys += fmt::format("{}\"{}\":0", i > 0 ? "," : "", i);
+    const Json json = Json::parse(keys + "}", "f.json");
+    std::vector<Problem> problems;
+    try {
+        JsonFields(json, "a pass", problems).refuseOthers();
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.problems().size(), maxProblems + 1);
+        EXPECT_EQ(error.problems().back().message, "has more than 1000 mistakes; these are the first");
+    }
+}
+
+TEST(Error, WhatATerminalWouldObeyIsNotPassedOn) {
+    const InputError error(Location{"a\x1b[2J.json", 1, 2}, "there is no key 'x\ny\x07'");
+    EXPECT_STREQ(error.what(), "a?[2J.json:1:2: there is no key 'x y?'");
+    EXPECT_EQ(error.problems().front().message, "there is no key 'x y?'");
+}
+
+TEST(NearName, ComparesNoLongTexts) {
+    const std::string text(100'000, 'x');
+    EXPECT_EQ(nearName(text, {text + "y"}), "");
+    EXPECT_EQ(nearName("blur", std::vector<std::string>(100'000, "blurr")), "");
+    EXPECT_EQ(nearName("ab", {"abcdefgh", "ba"}), "ba");
 }
 
 } // namespace

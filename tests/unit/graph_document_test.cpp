@@ -1,5 +1,7 @@
 #include "core/files.h"
 #include "graph_mock.h"
+#include <algorithm>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -132,6 +134,28 @@ TEST(GraphDocument, RefusesWhatIsTooMuch) {
               "g.json:1:33: a text of 70000 bytes; at most 65536 are read");
 }
 
+// As many passes, frames and variables as may be, each named by others: whoever searches lists for names
+// never ends.
+TEST(GraphDocument, NamesAreFoundAtOnceHoweverManyThereAre) {
+    std::string variables, passes, named;
+    for (size_t i = 0; i < maxGraphPasses; ++i) {
+        const char* joint = i > 0 ? "," : "";
+        variables += fmt::format("{}\"v{}\":1", joint, i);
+        passes += fmt::format(
+            "{}\"p{}\":{{\"type\":\"T\",\"properties\":{{\"x\":{{\"variable\":\"v{}\"}}}}}}", joint, i, i);
+        named += fmt::format("{}\"p{}\"", joint, maxGraphPasses - 1 - i);
+    }
+    std::string frames;
+    for (int i = 0; i < 50; ++i)
+        frames += fmt::format("{}{{\"title\":\"f\",\"passes\":[{}]}}", i > 0 ? "," : "", named);
+    const Graph graph =
+        parseGraph(fmt::format(R"({{"kestrel":1,"variables":{{{}}},"passes":{{{}}},"frames":[{}]}})",
+                               variables, passes, frames),
+                   "g.json");
+    EXPECT_EQ(graph.frames.back().passes.size(), maxGraphPasses);
+    EXPECT_EQ(graph.passes.back().bound.at("x"), "v9999");
+}
+
 // ---- validation and settings against a small table of types
 
 enum class Method { Fast, Exact };
@@ -233,6 +257,28 @@ TEST(GraphValidate, NamesUnconnectedInputsAndCyclesWithTheirPath) {
               "g:3:24: the input 'e.image' (texture) is not connected\n"
               "g:6:1: the edges form a cycle: a.result -> b.result -> c.result -> a.result\n"
               "g:7:1: the edges form a cycle: d.result -> d.result\n");
+}
+
+TEST(GraphValidate, ALongCycleIsShortened) {
+    std::string passes, edges;
+    for (int i = 0; i < 500; ++i) {
+        passes += fmt::format("{}\"p{}\": {{ \"type\": \"Blur\" }}", i > 0 ? "," : "", i);
+        edges += fmt::format("{}[\"p{}.result\", \"p{}.image\"]", i > 0 ? "," : "", i, (i + 1) % 500);
+    }
+    const std::string text = validated(passes, edges, "\"p0.result\"");
+    EXPECT_THAT(text, testing::HasSubstr("the edges form a cycle: p0.result -> p1.result -> p2.result"));
+    EXPECT_THAT(text, testing::HasSubstr("p99.result -> (399 more) -> p499.result -> p0.result"));
+}
+
+TEST(GraphValidate, MistakesWithoutEndAreToldToAnEnd) {
+    std::string passes, edges;
+    for (size_t i = 0; i < maxGraphPasses; ++i)
+        passes += fmt::format("{}\"p{}\": {{ \"type\": \"Blur\" }}", i > 0 ? "," : "", i);
+    for (size_t i = 0; i < maxGraphEdges; ++i)
+        edges += fmt::format("{}[\"q{}.x\", \"r.x\"]", i > 0 ? "," : "", i);
+    const std::string text = validated(passes, edges, "");
+    EXPECT_THAT(text, testing::HasSubstr("has more than 1000 mistakes; these are the first"));
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1001);
 }
 
 TEST(GraphValidate, PassNamesBecomeFileNames) {

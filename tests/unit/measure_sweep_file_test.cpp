@@ -279,5 +279,46 @@ TEST(SweepFile, ScenesAreSetUpWithEveryMistake) {
     EXPECT_THAT(mistakes, testing::Contains(HasSubstr("s.json:2:13: a sphere light needs 'radius'")));
 }
 
+// Axes of `values` values each, "a0" and so on.
+std::string axesOf(int axes, int values) {
+    std::string text;
+    for (int a = 0; a < axes; ++a) {
+        text += fmt::format(R"({}"a{}": [)", a > 0 ? ", " : "", a);
+        for (int v = 0; v < values; ++v) text += fmt::format("{}{}", v > 0 ? ", " : "", v);
+        text += "]";
+    }
+    return text;
+}
+
+std::vector<std::string> mistakesOfVariant(const std::string& keys) {
+    return mistakesOf(head + R"("variants": [{ "name": "v", "graph": "g.json", "output": "a.b", )" + keys +
+                      "}] }");
+}
+
+TEST(SweepFile, WhatIsTooMuchIsToldWithItsLimit) {
+    using testing::Contains;
+    // All of 10^12 combinations but one are excluded: what is tried counts, not what is left.
+    EXPECT_THAT(
+        mistakesOfVariant("\"axes\": {" + axesOf(12, 10) + R"(}, "exclude": [{"a0": 0}, {"a0": 1}, {"a0": 2},
+                    {"a0": 3}, {"a0": 4}, {"a0": 5}, {"a0": 6}, {"a0": 7}, {"a0": 8}, {"a1": 0}])"),
+        Contains(HasSubstr("multiply to more than 100000 combinations, excluded ones too, in all")));
+    EXPECT_THAT(mistakesOfVariant("\"axes\": {" + axesOf(65, 1) + "}"),
+                Contains(HasSubstr("65 axes; at most 64 are read")));
+    EXPECT_THAT(mistakesOfVariant("\"axes\": {" + axesOf(1, 10'001) + "}"),
+                Contains(HasSubstr("10001 values of an axis; at most 10000 are read")));
+    EXPECT_THAT(mistakesOfVariant("\"axes\": {\"a\": [\"" + std::string(201, 'x') + "\"]}"),
+                Contains(HasSubstr("a value of 201 bytes; at most 200 are read")));
+    EXPECT_THAT(mistakesOfVariant("\"axes\": {\"" + std::string(201, 'x') + "\": [1]}"),
+                Contains(HasSubstr("201 bytes in the name of an axis; at most 200 are read")));
+    EXPECT_THAT(mistakesOfVariant("\"set\": [\"" + std::string(1001, 'x') + "\"]"),
+                Contains(HasSubstr("a setting of 1001 bytes; at most 1000 are read")));
+    std::string settings;
+    for (int i = 0; i < 1'000; ++i) settings += (i > 0 ? ", \"" : "\"") + std::string(1'000, 'x') + "\"";
+    EXPECT_THAT(mistakesOfVariant("\"set\": [" + settings + "], \"axes\": {" + axesOf(2, 99) + "}"),
+                Contains(HasSubstr("multiply to more than 268435456 bytes of settings")));
+    EXPECT_THAT(mistakesOfVariant("\"set\": [" + settings + ", \"x\"]"),
+                Contains(HasSubstr("1001 settings; at most 1000 are read")));
+}
+
 } // namespace
 } // namespace kestrel
