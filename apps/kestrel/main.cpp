@@ -8,9 +8,13 @@
 #include "core/version.h"
 #include "machine.h"
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <fmt/format.h>
 #include <new>
+#include <unistd.h>
 
 namespace {
 
@@ -63,6 +67,30 @@ std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
     return {};
 }
 
+// Nothing has to be tidied up, since no file has its name before it is whole. Ends as the signal would have
+// it, so that the shell and its scripts see what happened.
+void endBySignal(int signal) {
+    constexpr std::string_view line = "\nkestrel: interrupted; what has been written is whole\n";
+    const std::string_view shown = ::isatty(STDERR_FILENO) != 0 ? line : line.substr(1);
+    if (::write(STDERR_FILENO, shown.data(), shown.size()) < 0) {
+    } // there is nobody to tell
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+}
+
+// An exception that nothing can catch: of a destructor of a plugin's pass, say.
+[[noreturn]] void endByException() {
+    try {
+        std::rethrow_exception(std::current_exception());
+    } catch (const std::exception& error) {
+        tell(ExitStatus::BadInput,
+             "an exception left a function that must not throw: " + oneLine(error.what()));
+    } catch (...) {
+        tell(ExitStatus::BadInput, "an exception of unknown kind left a function that must not throw");
+    }
+    std::_Exit(static_cast<int>(ExitStatus::BadInput));
+}
+
 int runGuarded(const Run& run) {
     try {
         const int status = run();
@@ -82,6 +110,8 @@ int runGuarded(const Run& run) {
 
 int main(int argc, char** argv) {
     setReplayCommand(quotedCommand(argc, argv));
+    std::set_terminate(endByException);
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, endBySignal);
     CLI::App app("Renders graphs of rendering techniques, and measures which gives which error at which run "
                  "time.",
                  "kestrel");

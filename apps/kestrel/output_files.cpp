@@ -166,18 +166,4 @@ void addGraphOutputs(FileBytes& files, Renderer& renderer, const Registry& regis
     }
 }
 
-void writeAll(const FileBytes& files) {
-    std::vector<std::filesystem::path> written;
-    try {
-        for (const auto& [file, bytes] : files) {
-            writeFile(file, bytes);
-            written.push_back(file);
-        }
-    } catch (...) {
-        std::error_code ignored;
-        for (const std::filesystem::path& file : written) std::filesystem::remove(file, ignored);
-        throw;
-    }
-}
-
 } // namespace kestrel

@@ -75,7 +75,7 @@ public:
         for (const OutputFile& output : files_)
             if (output.sequence) addOutput(made, renderer, registry, output);
         if (folder_ && arguments_.every > 0) addGraphOutputs(made, renderer, registry, *folder_, mark(frame));
-        writeAll(made);
+        writeFiles(made);
         for (const auto& [file, bytes] : made) written_.emplace_back(file, bytes.size());
     }
 
@@ -89,7 +89,7 @@ public:
             const auto bytes = std::as_bytes(std::span(stats));
             made.emplace_back(arguments_.stats, std::vector<std::byte>(bytes.begin(), bytes.end()));
         }
-        writeAll(made);
+        writeFiles(made);
         for (const auto& [file, bytes] : made) written_.emplace_back(file, bytes.size());
     }
 
@@ -103,7 +103,10 @@ private:
         try {
             what();
         } catch (const InputError& error) {
-            problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
+            // Several files of one folder have one cause.
+            for (const Problem& problem : error.problems())
+                if (std::ranges::find(problems_, problem.text(), &Problem::text) == problems_.end())
+                    problems_.push_back(problem);
         }
     }
     // Whether the file can be written, and nothing else is written there.

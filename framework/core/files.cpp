@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
 
 namespace fs = std::filesystem;
 
@@ -100,41 +101,74 @@ fs::path linkTarget(const fs::path& file) {
     return failure ? file : target;
 }
 
-// An open file descriptor on a temporary name that is removed again unless it was renamed.
+// A file that is written beside its target and takes its name once it is whole. Where the file system allows
+// it has no name before then, so that nothing is left of it however the program ends; else a temporary one.
 class TemporaryFile {
 public:
     explicit TemporaryFile(const fs::path& target)
-        : name_(target.string() + ".XXXXXX") {
+        : target_(target) {
+        const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+        if (::access("/proc/self/fd", X_OK) == 0)
+            descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+        if (descriptor_ >= 0) return;
+        name_ = target.string() + ".XXXXXX";
         descriptor_ = ::mkostemp(name_.data(), O_CLOEXEC);
         if (descriptor_ < 0) failFile(target, "cannot be written: " + systemReason(errno));
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile() {
-        if (descriptor_ >= 0) ::close(descriptor_);
-        if (!renamed_) ::unlink(name_.c_str());
-    }
-    void write(const fs::path& target, std::span<const std::byte> bytes) {
-        writeDescriptor(descriptor_, target, bytes);
-    }
-    void renameTo(const fs::path& target) {
         // mkostemp makes the file private; a result is as readable as any other file that the user makes.
         const mode_t mask = ::umask(0);
         ::umask(mask);
         ::fchmod(descriptor_, 0666 & ~mask);
-        const int closed = ::close(descriptor_);
-        descriptor_ = -1;
-        if (closed != 0) failFile(target, "cannot be written: " + systemReason(errno));
-        if (::rename(name_.c_str(), target.c_str()) != 0)
-            failFile(target, "cannot be written: " + systemReason(errno));
-        renamed_ = true;
+    }
+    TemporaryFile(TemporaryFile&& other) noexcept
+        : target_(std::move(other.target_))
+        , name_(std::exchange(other.name_, {}))
+        , descriptor_(std::exchange(other.descriptor_, -1)) {}
+    TemporaryFile& operator=(TemporaryFile&&) = delete;
+    ~TemporaryFile() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+        if (!name_.empty()) ::unlink(name_.c_str());
+    }
+    void write(std::span<const std::byte> bytes) { writeDescriptor(descriptor_, target_, bytes); }
+    // Closes it under a temporary name: a process may not hold many files open.
+    void close() {
+        for (int i = 0; name_.empty(); ++i) {
+            const std::string beside = fmt::format("{}.{}-{}", target_.string(), ::getpid(), i);
+            if (link(beside)) name_ = beside;
+        }
+        if (::close(std::exchange(descriptor_, -1)) != 0) fail();
+    }
+    void finish() {
+        if (name_.empty() && link(target_)) return;
+        // A link replaces nothing: where the target is there already, a name beside it is renamed.
+        if (descriptor_ >= 0) close();
+        if (::rename(name_.c_str(), target_.c_str()) != 0) fail();
+        name_.clear();
     }
 
 private:
-    std::string name_;
+    [[noreturn]] void fail() const { failFile(target_, "cannot be written: " + systemReason(errno)); }
+    // False if the name is taken.
+    [[nodiscard]] bool link(const fs::path& name) const {
+        const std::string self = fmt::format("/proc/self/fd/{}", descriptor_);
+        if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
+        if (errno != EEXIST) fail();
+        return false;
+    }
+
+    fs::path target_;
+    std::string name_; // empty: none yet, or no more
     int descriptor_ = -1;
-    bool renamed_ = false;
 };
+
+TemporaryFile beside(const fs::path& file) {
+    const fs::path target = linkTarget(file);
+    if (target.has_parent_path()) {
+        std::error_code failure;
+        fs::create_directories(target.parent_path(), failure);
+        if (failure) failFile(target.parent_path(), "cannot be made: " + failure.message());
+    }
+    return TemporaryFile(target);
+}
 
 fs::path libraryFolder() {
     Dl_info info{};
@@ -181,15 +215,23 @@ void writeFile(const fs::path& file, std::span<const std::byte> bytes) {
         writeStream(file, bytes);
         return;
     }
-    const fs::path target = linkTarget(file);
-    if (target.has_parent_path()) {
-        std::error_code failure;
-        fs::create_directories(target.parent_path(), failure);
-        if (failure) failFile(target.parent_path(), "cannot be made: " + failure.message());
+    TemporaryFile temporary = beside(file);
+    temporary.write(bytes);
+    temporary.finish();
+}
+
+void writeFiles(const FileBytes& files) {
+    std::vector<TemporaryFile> whole;
+    for (const auto& [file, bytes] : files) {
+        if (isStream(file)) continue;
+        whole.push_back(beside(file));
+        whole.back().write(bytes);
+        constexpr std::size_t open = 100;
+        if (whole.size() > open) whole.back().close();
     }
-    TemporaryFile temporary(target);
-    temporary.write(target, bytes);
-    temporary.renameTo(target);
+    for (const auto& [file, bytes] : files)
+        if (isStream(file)) writeStream(file, bytes);
+    for (TemporaryFile& temporary : whole) temporary.finish();
 }
 
 void requireWritableFolder(const fs::path& folder) {

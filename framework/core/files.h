@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kestrel {
@@ -26,12 +27,16 @@ std::string readGivenText(const std::filesystem::path& file, std::uintmax_t limi
 // Whether it is read as a stream: "-", a pipe or a device.
 bool isStream(const std::filesystem::path& file);
 
-// Writes to a temporary name beside `file`, then renames, so that no reader ever sees half a file. Makes the
-// parent folder if it lacks. A pipe or a device is written as it is, and so is standard output, called "-";
-// of a symbolic link that to which it leads. Throws InputError naming the file and the system's reason;
-// nothing is left behind then.
+// Writes beside `file`, without a name where the file system allows, then gives it that of `file`: no reader
+// ever sees half a file, however the program ends. Makes the parent folder if it lacks. A pipe or a device is
+// written as it is, and so is standard output, called "-"; of a symbolic link that to which it leads. Throws
+// InputError naming the file and the system's reason; nothing is left behind then.
 void writeFile(const std::filesystem::path& file, std::span<const std::byte> bytes);
 void writeFile(const std::filesystem::path& file, std::string_view text);
+
+// The same of several files: none has its name before all are whole.
+using FileBytes = std::vector<std::pair<std::filesystem::path, std::vector<std::byte>>>;
+void writeFiles(const FileBytes& files);
 
 // Throws as writeFile() would, by what can be known before there is anything to write: missing folders are
 // made and taken away again. For what takes long before it writes.

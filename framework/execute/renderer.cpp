@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "draw/gpu_scene.h"
 #include "gl/context.h"
+#include "gl/lost_context.h"
 #include "graph/value_text.h"
 #include <chrono>
 #include <cmath>
@@ -293,6 +294,7 @@ const FrameRecord& Renderer::frame() {
 
     const int recompiled = runFrame(frame, events);
     if (options_.timing || options_.finishFrames) gl::finish();
+    gl::requireLiveContext();
 
     record_ = {index_,     millisecondsSince(start), events, executor_->samples(), executor_->report().values,
                recompiled, executor_->report().bad};

@@ -126,7 +126,10 @@ private:
     }
 
     void createContext() {
-        constexpr EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+        // The first pair asks to be told of resets (lost_context.h); a driver without that is asked again.
+        constexpr EGLint attributes[] = {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                         EGL_LOSE_CONTEXT_ON_RESET,
+                                         EGL_CONTEXT_MAJOR_VERSION,
                                          4,
                                          EGL_CONTEXT_MINOR_VERSION,
                                          6,
@@ -137,7 +140,9 @@ private:
                                          EGL_TRUE,
 #endif
                                          EGL_NONE};
-        context_ = egl_.eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+        for (const EGLint* chosen : {attributes, attributes + 2})
+            if (context_ == EGL_NO_CONTEXT)
+                context_ = egl_.eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, chosen);
         if (context_ == EGL_NO_CONTEXT)
             throw MachineError(
                 fmt::format("the driver refuses an OpenGL 4.6 core context (EGL error 0x{:x}): it needs "

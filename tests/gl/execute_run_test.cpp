@@ -187,6 +187,18 @@ TEST_F(RunTest, ADaysEditsLeaveMemoryFlat) {
     EXPECT_LE(renderer->executor().programs().cached(), Programs::maxUnused + 1);
 }
 
+// No driver loses a context at will: its answer is put in the place of the function that asks for it.
+TEST_F(RunTest, ALostContextIsTold) {
+    const auto renderer = rendererOf(graphOf({"a: Fill = 1"}, {}, {"a.result"}));
+    renderer->frame();
+    const auto asked = glad_glGetGraphicsResetStatus;
+    glad_glGetGraphicsResetStatus = []() -> GLenum { return GL_INNOCENT_CONTEXT_RESET; };
+    EXPECT_EQ(messageOf<MachineError>([&] { renderer->frame(); }),
+              "the driver has reset the GPU, and the OpenGL context is lost because of another program");
+    glad_glGetGraphicsResetStatus = asked;
+    renderer->frame();
+}
+
 TEST_F(RunTest, TimesAreTakenByStepAndGroup) {
     RenderOptions options;
     options.timing = true;

@@ -1,6 +1,7 @@
 // Reading what the user names, and writing so that nobody sees half a file.
 #include "core/files.h"
 #include "support/message.h"
+#include <algorithm>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -70,6 +71,51 @@ TEST_F(CoreFiles, WhatCannotBeWrittenIsToldBeforeAndNothingIsLeftBehind) {
               folder_.string() + ": cannot be written: it is a folder");
     EXPECT_THAT(messageOf([&] { requireWritable("/proc/none/x.png"); }),
                 HasSubstr("/proc/none: cannot be written"));
+}
+
+std::vector<std::string> namesIn(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::vector<std::byte> someBytes(std::size_t count) { return std::vector<std::byte>(count, std::byte{'x'}); }
+
+TEST_F(CoreFiles, WhatIsWrittenReplacesTheWholeFileAndLeavesNothingBeside) {
+    for (const char* text : {"first", "second"}) {
+        writeFile(folder_ / "a", text);
+        EXPECT_EQ(readText(folder_ / "a"), text);
+    }
+    EXPECT_THAT(namesIn(folder_), testing::ElementsAre("a"));
+    const fs::perms ours = fs::status(folder_ / "a").permissions();
+    std::ofstream(folder_ / "b") << "by others";
+    EXPECT_EQ(ours, fs::status(folder_ / "b").permissions());
+}
+
+TEST_F(CoreFiles, OfSeveralFilesNoneIsWrittenWhereOneCannotBe) {
+    writeFile(folder_ / "a", "before");
+    const FileBytes good{{folder_ / "a", someBytes(3)}, {folder_ / "new" / "b", someBytes(4)}};
+    FileBytes bad = good;
+    bad.emplace_back("/dev/full", someBytes(5));
+    EXPECT_EQ(messageOf([&] { writeFiles(bad); }), "/dev/full: cannot be written: No space left on device");
+    EXPECT_EQ(readText(folder_ / "a"), "before");
+    EXPECT_FALSE(fs::exists(folder_ / "new" / "b"));
+    writeFiles(good);
+    EXPECT_EQ(readText(folder_ / "a"), "xxx");
+    EXPECT_EQ(readText(folder_ / "new" / "b"), "xxxx");
+    EXPECT_THAT(namesIn(folder_), testing::ElementsAre("a", "new"));
+    EXPECT_THAT(namesIn(folder_ / "new"), testing::ElementsAre("b"));
+}
+
+TEST_F(CoreFiles, MoreFilesThanAProcessMayHoldOpenAreWritten) {
+    FileBytes files;
+    for (int i = 0; i < 2000; ++i) files.emplace_back(folder_ / std::to_string(i), someBytes(1));
+    for (int round = 0; round < 2; ++round) {
+        writeFiles(files);
+        EXPECT_EQ(namesIn(folder_).size(), files.size());
+    }
 }
 
 } // namespace
