@@ -27,9 +27,9 @@ if [ "${1:-}" = --driver ]; then
 fi
 # Half of the time of all tests; the graphs' own tests go through the same passes.
 slow='ABuffer(Lists|Rays|Hits|Primitives|Construction|Limits|Layers)\.|ShippedErrors\.NoGraph'
-slow+='|ShippedShaders\.CompileUnderEvery|stress_test\.test_what_is_killed|that_is_killed|ShippedMemory|Composite\.(Panes|TheHouse|What|More|Surfaces)'
+slow+='|ShippedShaders\.CompileUnderEvery|stress_test\.test_what_is_killed|that_is_killed|Composite\.(Panes|TheHouse|What|More|Surfaces)'
 slow+='|Hold/path_trace|LeavingOutTest\.ChangesNoImage/(path_trace|full|transparency|rsm_gather)|Horizons\.WithLayersTheTower'
-slow+='|DistanceFields\.EveryVariant'
+slow+='|DistanceFields\.EveryVariant|ShippedMemory'
 sources() { git -C "$root" ls-files '*.cpp' '*.h' | grep -v '^shaders/'; }
 
 # build FOLDER CMAKE_ARGUMENT... [-- TARGET...]: the build of a stage beside the usual one.

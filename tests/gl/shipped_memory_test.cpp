@@ -27,14 +27,14 @@ double residentMiB() {
     return file ? resident * 4096 / (1 << 20) : 0;
 }
 
-// The largest graph, on a scene that moves.
+// The largest graph, on a scene that moves; small maps, for speed.
 TEST(ShippedMemory, TwoThousandFramesOfTheLargestGraphTakeNoMore) {
     context();
     RenderOptions options;
     options.timing = true;
     options.size = {32, 18, 1};
-    Renderer renderer(shippedGraph("full"), shipped(), loadScene("builtin:skinned"), context().capabilities(),
-                      options);
+    Renderer renderer(shippedGraph("full", {"bom.resolution=32", "rsm.resolution=32"}), shipped(),
+                      loadScene("builtin:skinned"), context().capabilities(), options);
     constexpr int warm = 200, frames = 2'000;
     double settled = 0;
     int objects = 0;
