@@ -29,7 +29,7 @@ def stressed(here, graph, *options):
     result = kestrel("stress", graph, "--size", "32x18", "--json", f"{here}/r.json", *options, env=PLANTED)
     assert result.status in (0, 1), result.err
     data = json.loads(Path(here, "r.json").read_text())
-    assert (result.status == 1) == any(case["outcome"] not in ("held", "lacking") for case in data["cases"])
+    assert (result.status == 1) == any(case["outcome"] not in ("held", "lacking", "unfit") for case in data["cases"])
     return {case["name"]: case for case in data["cases"]}, result
 
 
@@ -89,6 +89,16 @@ def test_dropped_fragments_are_found():
         assert not missed(cases["layers/1"])
         wrong = missed(cases["layers/100"])
         assert wrong and wrong[0]["port"] == "wrong.result" and wrong[0]["expects"] == "order", cases["layers/100"]
+
+
+def test_what_a_graph_refuses_of_a_case_is_no_failure():
+    """Layers are composited pixel by pixel of the frame: a guard band of all passes does not fit."""
+    with folder() as here:
+        file = f"{here}/r.json"
+        out = done("stress", "transparency.json", "--size", "32x18", "--only", "frame/guard", "--json", file).out
+        case, = json.loads(Path(file).read_text())["cases"]
+        assert case["outcome"] == "unfit" and "without guard band" in case["why"], case
+        assert "frame/guard: unfit: " in out and "1 unfit" in out, out
 
 
 def test_what_is_left_out_and_needed_is_found():

@@ -12,8 +12,8 @@ namespace {
 
 using ResultJson = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 6> outcomeNames = {"held", "missed",  "crashed",
-                                                          "hung", "refused", "lacking"};
+constexpr std::array<std::string_view, 7> outcomeNames = {"held",    "missed",  "crashed", "hung",
+                                                          "refused", "lacking", "unfit"};
 
 ResultJson checkJson(const StressCheck& check) {
     ResultJson json = {{"port", check.port}, {"expects", check.expects}, {"held", check.held}};
@@ -79,7 +79,8 @@ std::string_view stressOutcomeName(StressOutcome outcome) {
 }
 
 bool isBad(StressOutcome outcome) {
-    return outcome != StressOutcome::Held && outcome != StressOutcome::Lacking;
+    return outcome != StressOutcome::Held && outcome != StressOutcome::Lacking &&
+           outcome != StressOutcome::Unfit;
 }
 
 std::string stressResultText(const StressResult& result) { return dumped(resultJson(result), -1); }

@@ -30,7 +30,8 @@ enum class StressOutcome : std::uint8_t {
     Crashed, // the process ended
     Hung,    // it took longer than the time limit
     Refused, // graph, scene or settings were, with a message
-    Lacking  // the device lacks what it takes
+    Lacking, // the device lacks what it takes
+    Unfit    // the graph says that what the case sets of its properties does not fit together
 };
 [[nodiscard]] std::string_view stressOutcomeName(StressOutcome outcome); // "held", "missed"…
 // Whether it makes the run fail.

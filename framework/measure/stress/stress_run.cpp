@@ -318,7 +318,8 @@ StressResult StressRunner::run(const StressCase& one) {
     } catch (const Error& error) {
         result.outcome = error.status() == ExitStatus::MachineLacks    ? StressOutcome::Lacking
                          : error.status() == ExitStatus::MeasureFailed ? StressOutcome::Missed
-                                                                       : StressOutcome::Refused;
+                         : one.properties.empty()                      ? StressOutcome::Refused
+                                                                       : StressOutcome::Unfit;
         result.why = refusalText(error);
     }
     result.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
