@@ -102,7 +102,7 @@ size=1280x720 frames=32
 [ "$software" = true ] && size=160x90 frames=4
 # Of the passes that run in every frame.
 total() { sed -n 's/^time of .*: median \([0-9.]*\) ms, ran in \([0-9]*\) of \([0-9]*\) .*/\1 \2 \3/p' "$1" | awk '$2 == $3 { sum += $1 } END { printf "%.3f", sum }'; }
-for graph in ray_ao soft_shadow full; do
+for graph in ray_ao path_trace full; do
     for clock in timer_query finish; do
         "$KESTREL" render $graph.json --scene builtin:tower --size $size --frames $frames --clock $clock --stats "$out/$graph.$clock.json" \
             --out "$temporary/timed" >"$temporary/$clock" 2>>"$out/said/clocks" || wrong "$graph.json with --clock $clock fails"
