@@ -58,12 +58,16 @@ tests | slow)
     export KESTREL_BUILD=${KESTREL_BUILD:-$root/build}
     "$root/apps/build.sh" test
     if [ -n "$driver" ]; then
-        export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=zink
+        # With values of uniforms compiled in, zink of Mesa 25.0 runs shaders with older ones; which of both is not part of
+        # its cache's key, so that it has a folder of its own.
+        export LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=zink ZINK_INLINE_UNIFORMS=0
+        export MESA_SHADER_CACHE_DIR=$KESTREL_BUILD/shader-cache-zink
         renderer=$("$KESTREL_BUILD/bin/kestrel" --version --gl | sed -n 's/^  "renderer": "\(.*\)",$/\1/p' || true)
         [[ $renderer == zink* ]] || { echo "tests/run.sh: no zink over lavapipe here: install mesa-vulkan-drivers" >&2; exit 3; }
         echo "On $renderer"
-        # OSMesa draws by itself, whatever the driver; with zink it crashes in Mesa 25.
-        run "$KESTREL_BUILD" -L '^(gl|stability)$' -E "[Oo]s[Mm]esa|$slow" "$@"
+        mkdir -p "$MESA_SHADER_CACHE_DIR"
+        # OSMesa draws by itself, whatever the driver, and crashes in Mesa 25 with zink, which also keeps more memory.
+        run "$KESTREL_BUILD" -L '^(gl|stability)$' -E "[Oo]s[Mm]esa|ADaysEditsLeaveMemoryFlat|$slow" "$@"
     elif [ "$stage" = slow ]; then
         run "$KESTREL_BUILD" -R "$slow" "$@"
     elif [ $# -gt 0 ]; then
