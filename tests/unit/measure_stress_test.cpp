@@ -7,6 +7,7 @@
 #include "support/folders.h"
 #include "support/temporary_folder.h"
 #include <cmath>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <set>
@@ -40,7 +41,7 @@ TEST(StressCases, AreManyEachOfItsKindByItsName) {
         EXPECT_TRUE(names.insert(one.name).second) << one.name;
         EXPECT_EQ(one.name.substr(0, one.name.find('/')), stressKindName(one.kind));
         EXPECT_FALSE(one.does.empty() || one.does.ends_with('.')) << one.name;
-        EXPECT_EQ(one.expects == StressExpects::EnergyHeld, one.energy > 0) << one.name;
+        EXPECT_EQ(one.expects == StressExpects::EnergyHeld, one.reflectance > 0) << one.name;
     }
     EXPECT_GE(names.size(), 60u);
     EXPECT_EQ(chooseStressCases("").size(), names.size());
@@ -69,6 +70,30 @@ TEST(StressGraph, ScalesLengthsAndNothingElse) {
     EXPECT_EQ(static_cast<const Lengths&>(*makePasses(changed, registry).at("a")).guard, 64);
     EXPECT_EQ(static_cast<const Lengths&>(*makePasses(changed, registry).at("a")).share, 0.5f);
     EXPECT_TRUE(validate(changed, registry).empty());
+}
+
+class Bounces final : public Pass {
+public:
+    int bounces = 2;
+    [[nodiscard]] Declaration declare(const World&, const Inputs&, const Demand&) const override {
+        return {};
+    }
+};
+
+TEST(StressEnergy, IsThatOfAsManyBouncesAsTheGraphFollows) {
+    Registry registry = lengths();
+    registry.add(Describe<Bounces>("Bounces", "Follows")
+                     .number("bounces", &Bounces::bounces, 1, 8, "rays", "How many"));
+    const auto light = [&](const char* passes) {
+        return closedRoomLight(
+            parseGraph(fmt::format(R"({{ "kestrel": 1, "passes": {{ {} }} }})", passes), "g.json"), registry,
+            0.5);
+    };
+    EXPECT_EQ(light(R"("a": { "type": "Lengths" })"), 1.5);
+    EXPECT_EQ(light(R"("a": { "type": "Bounces" })"), 1.75);
+    EXPECT_EQ(
+        light(R"("a": { "type": "Bounces" }, "b": { "type": "Bounces", "properties": { "bounces": 3 } })"),
+        1.875);
 }
 
 TEST(StressDistance, SeesWhatIsOffEverywhereAndWhatIsFarOffSomewhere) {

@@ -7,12 +7,11 @@
 namespace kestrel {
 namespace {
 
-// What a point of a closed room of radiance `emission` and albedo `albedo` sends out after one bounce at
-// most: E (1 - rho^(n + 1)) / (1 - rho) with n = 1. Besides its albedo a surface reflects as a dielectric
-// does, over the hemisphere the mean of Schlick's F0 + (1 - F0) (1 - cos)^5, which is F0 + (1 - F0) / 21.
-double closedRoom(double emission, double albedo) {
+// What a surface reflects: its albedo, and what a dielectric does besides, over the hemisphere the mean of
+// Schlick's F0 + (1 - F0) (1 - cos)^5, which is F0 + (1 - F0) / 21.
+double reflectanceOf(double albedo) {
     const double f0 = double{shared::dielectricReflectance}, mirrored = f0 + (1 - f0) / 21;
-    return emission * (1 + albedo + (1 - albedo) * mirrored);
+    return albedo + (1 - albedo) * mirrored;
 }
 
 } // namespace
@@ -68,7 +67,7 @@ void addLightCases(std::vector<StressCase>& cases) {
              .edit = {.albedo = glm::vec3(static_cast<float>(albedo)), .emission = glm::vec3(1)},
              .frames = 16,
              .expects = StressExpects::EnergyHeld,
-             .energy = closedRoom(1, albedo)});
+             .reflectance = reflectanceOf(albedo)});
 }
 
 } // namespace kestrel

@@ -85,6 +85,17 @@ std::vector<size_t> chooseStressCases(const std::string& only) {
     return chosen;
 }
 
+double closedRoomLight(const Graph& graph, const Registry& registry, double reflectance) {
+    double bounces = 1;
+    for (const GraphPass& pass : graph.passes)
+        if (const PassType* type = registry.find(pass.type); type != nullptr)
+            if (const PropertyInfo* property = type->property("bounces"); property != nullptr)
+                bounces = std::max(bounces, numberOf(given(pass, *property)));
+    double light = 1, share = 1;
+    for (int i = 0; i < static_cast<int>(bounces); ++i) light += share *= reflectance;
+    return light;
+}
+
 Graph stressGraph(Graph graph, const Registry& registry, double scale,
                   std::span<const StressProperty> properties) {
     for (GraphPass& pass : graph.passes) {

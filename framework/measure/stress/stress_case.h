@@ -34,7 +34,7 @@ enum class StressExpects : std::uint8_t {
     Mirrored,  // the plain picture, left and right exchanged
     AnyOrder,  // the picture of the same triangles in the opposite order
     Recovers,  // after the events the picture that is there without them
-    EnergyHeld // no light beyond `energy`
+    EnergyHeld // no light beyond what a closed room of that reflectance has
 };
 [[nodiscard]] std::string_view stressExpectsName(StressExpects expects); // "same", "order", …
 
@@ -72,7 +72,7 @@ struct StressCase {
     std::vector<StressProperty> properties = {};
     std::vector<StressEvent> events = {}; // in order of their frames
     StressExpects expects = StressExpects::Nothing;
-    double energy = 0; // of EnergyHeld, radiance
+    double reflectance = 0; // of EnergyHeld: the room shines with radiance 1
 };
 
 // All of them, by kind.
@@ -87,6 +87,10 @@ void addRunCases(std::vector<StressCase>& cases);      // numbers, rays, time
 // The indices of the cases that `only` chooses: one by its name, or all of a kind ("scale"); all where it is
 // empty. Throws InputError with the near name.
 [[nodiscard]] std::vector<size_t> chooseStressCases(const std::string& only);
+
+// What a point of a closed room that shines with radiance 1 sends out at most, by as many bounces n as the
+// graph follows (the greatest property `bounces`, else 1): 1 + rho + ... + rho^n.
+[[nodiscard]] double closedRoomLight(const Graph& graph, const Registry& registry, double reflectance);
 
 // The graph with the lengths among its properties (those whose unit is the scene's) times `scale`, then with
 // what the case sets. A property that is not given has its default scaled; a value beyond the property's
