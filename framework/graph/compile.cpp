@@ -6,6 +6,7 @@
 #include "graph/network.h"
 #include "graph/plan.h"
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 namespace kestrel {
@@ -29,6 +30,9 @@ void setProperties(Pass& pass, const PassType& type, const GraphPass& document) 
         for (const auto& [name, given] : document.properties)
             if (name == property.name) value = given;
         KESTREL_CHECK(!valueMistake(property, value));
+        // A file is named from the folder of the graph's.
+        if (auto* file = std::get_if<std::string>(&value); property.unit == "file" && !file->empty())
+            *file = (std::filesystem::path(document.where.file).parent_path() / *file).string();
         guarded(document.name, "a property", [&] { property.set(pass, value); });
     }
 }
