@@ -90,7 +90,8 @@ void Renderer::compileGraph(const Graph& graph) {
                 {options_.keepAll, options_.shareMemory, options_.previews, grown_}));
     compileMs_ = millisecondsSince(start);
     executor_->adopt(std::move(plan), [&](const PlanPass& pass) {
-        std::string text;
+        // Of another registration of the type it is another pass: its plugin was built anew.
+        std::string text = fmt::format("{}\n", pass.instance->typeInstance);
         for (const PropertyInfo& property : registry_.find(pass.type)->properties)
             text += property.name + "=" + jsonText(property.get(*pass.instance)) + "\n";
         return text;

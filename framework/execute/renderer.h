@@ -91,6 +91,7 @@ public:
     [[nodiscard]] Executor& executor() { return *executor_; }
     [[nodiscard]] std::string cameraName() const;
     [[nodiscard]] double timeStep() const { return options_.timeStep.value_or(1 / scene_.frameRate); }
+    [[nodiscard]] double time() const { return time_; } // of the last frame, seconds of the scene
     [[nodiscard]] std::uint32_t nextFrame() const { return index_; }
     [[nodiscard]] double compileMs() const { return compileMs_; } // of the last compilation, without shaders
 

@@ -32,6 +32,11 @@ std::string abiStamp();
 // Registry::shaderFolders.
 PluginResult loadPlugin(const std::filesystem::path& library, Registry& registry);
 
+// Loads a plugin that was built anew since it was loaded, from a copy of its file. Its pass types take the
+// place of those before (Registry::replace); a type that it no longer has stays as it was. The code before
+// stays mapped, since passes made by it may live. On failure the registry is as it was.
+PluginResult reloadPlugin(const std::filesystem::path& library, Registry& registry);
+
 // Loads every *.so of the folders, by name. A bad plugin is skipped with a warning in the log, and so is a
 // folder that does not exist. Returns the failures.
 std::vector<PluginResult> loadPlugins(Registry& registry, const std::vector<std::filesystem::path>& folders);

@@ -69,6 +69,38 @@ TEST(PluginLoader, ANameCanBeTakenOnce) {
     EXPECT_EQ(registry.types().size(), 1u);
 }
 
+TEST(PluginLoader, APluginThatWasBuiltAnewTakesThePlaceOfItsTypes) {
+    const test::TemporaryFolder folder;
+    const fs::path library = folder / "good.so";
+    // A linker writes another file under the name; the one that is mapped is not written into.
+    const auto build = [&](const char* name) {
+        fs::remove(library);
+        fs::copy_file(plugin(name), library);
+    };
+    const auto value = [](const Pass& pass) {
+        return pass.declare({}, {}, Demand::everything()).outputs.at(0).constant->x;
+    };
+    build("good");
+    Registry registry;
+    ASSERT_EQ(loadPlugin(library, registry).failure, PluginFailure::None);
+    const auto before = registry.find("Good")->make();
+    const std::uint64_t instance = registry.find("Good")->instance;
+    build("rebuilt");
+    const PluginResult result = reloadPlugin(library, registry);
+    EXPECT_EQ(result.message, "");
+    EXPECT_THAT(result.types, ElementsAre("Good"));
+    EXPECT_NE(registry.find("Good")->instance, instance);
+    EXPECT_EQ(registry.find("Good")->plugin, "good.so");
+    EXPECT_EQ(value(*registry.find("Good")->make()), 2);
+    EXPECT_EQ(value(*before), 1); // its code is there still
+    // Nothing is left beside it, and what cannot be taken changes nothing.
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+    build("other_stamp");
+    EXPECT_EQ(reloadPlugin(library, registry).failure, PluginFailure::OtherStamp);
+    EXPECT_EQ(reloadPlugin(plugin("taken"), registry).failure, PluginFailure::NameTaken);
+    EXPECT_EQ(value(*registry.find("Good")->make()), 2);
+}
+
 TEST(PluginLoader, LoadsFoldersInOrderAndSkipsWhatIsBad) {
     const test::TemporaryFolder folder;
     fs::create_directories(folder / "shaders");
