@@ -17,7 +17,7 @@ namespace kestrel {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 struct CheckArguments : GraphArguments {
     std::string capabilities;
@@ -62,9 +62,10 @@ void requireShaders(const Plan& plan, const Registry& registry) {
     if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-Json checkJson(const Graph& graph, const Scene& scene, const Plan& plan, const Capabilities& capabilities) {
-    Json json = {{"graph", graph.name}, {"scene", scene.name}, {"renderer", capabilities.renderer}};
-    json.update(Json::parse(planJson(plan)));
+OrderedJson checkJson(const Graph& graph, const Scene& scene, const Plan& plan,
+                      const Capabilities& capabilities) {
+    OrderedJson json = {{"graph", graph.name}, {"scene", scene.name}, {"renderer", capabilities.renderer}};
+    json.update(OrderedJson::parse(planJson(plan)));
     return json;
 }
 
@@ -102,7 +103,7 @@ int check(const CheckArguments& arguments) {
     if (!arguments.noShaders) requireShaders(plan, registry);
     if (arguments.json)
         fmt::print("{}\n", checkJson(graph, scene, plan, world.capabilities)
-                               .dump(2, ' ', false, Json::error_handler_t::replace));
+                               .dump(2, ' ', false, OrderedJson::error_handler_t::replace));
     else
         say("for: OpenGL {}, {}\n{}", world.capabilities.version,
             world.capabilities.renderer == "none" ? "the minimum" : world.capabilities.renderer,

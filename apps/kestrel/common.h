@@ -2,6 +2,7 @@
 #pragma once
 #include "graph/graph.h"
 #include "graph/plan.h"
+#include "named.h"
 #include "say.h"
 #include "scene/scene.h"
 #include <CLI/CLI.hpp>
@@ -28,12 +29,6 @@ void addGraphArguments(CLI::App& command, GraphArguments& arguments);
 // Adds --allow-outside to a command that loads scenes.
 void addAllowOutside(CLI::App& command, bool& allowOutside);
 
-// All pass types of the plugins that are there. A plugin that can't be used is told and skipped.
-const Registry& loadedRegistry();
-
-// The file of a graph: as it is named, else among those that come with Kestrel. Throws InputError with the
-// near name.
-std::filesystem::path graphFile(const std::string& graph);
 // The graph with the settings applied, and the scene's setup as the command line changes it. Throws
 // InputError with everything that is wrong with it.
 Graph openGraph(const GraphArguments& arguments, const Registry& registry);
@@ -48,8 +43,6 @@ std::string pathOf(const std::string& file);
 // Of the scene that openScene() opens; "builtin:NAME" as it is.
 std::string scenePath(const GraphArguments& arguments, const Graph& graph);
 
-// "640x360". Throws InputError for anything else, for 0 and for sides above 16384.
-Extent parseSize(const std::string& text);
 // "pass.port". Throws InputError for anything else.
 PortRef parsePort(const std::string& text);
 

@@ -13,14 +13,14 @@ namespace kestrel {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-void printJson(const Json& json) {
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+void printJson(const OrderedJson& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, OrderedJson::error_handler_t::replace));
 }
 
 int listScenes(bool json) {
-    Json all = Json::array();
+    OrderedJson all = OrderedJson::array();
     for (const BuiltinInfo& info : builtinInfos()) {
         all.push_back({{"name", "builtin:" + info.name}, {"description", info.description}});
         if (!json) fmt::print("builtin:{:<10} {}\n", info.name, info.description);
@@ -30,7 +30,7 @@ int listScenes(bool json) {
 }
 
 // Numbers and yes-or-no facts by name, in one order for people and machines.
-Json factsJson(const SceneFacts& f) {
+OrderedJson factsJson(const SceneFacts& f) {
     return {{"triangles", f.triangles},
             {"vertices", f.vertices},
             {"materials", f.materials},
@@ -68,7 +68,7 @@ int tellScene(const std::string& source, const SceneOptions& options, bool json)
     std::vector<std::string> animations, lights;
     for (const Animation& animation : scene.animations) animations.push_back(animation.name);
     for (const Light& light : scene.lights) lights.push_back(light.name);
-    const Json values = factsJson(facts);
+    const OrderedJson values = factsJson(facts);
     if (json) {
         printJson({{"name", scene.name},
                    {"cameras", cameras},
