@@ -29,7 +29,7 @@ fi
 slow='ABuffer(Lists|Rays|Hits|Primitives|Construction|Limits|Layers)\.|ShippedErrors\.NoGraph'
 slow+='|ShippedShaders\.CompileUnderEvery|stress_test\.test_what_is_killed|that_is_killed|Composite\.(Panes|TheHouse|What|More|Surfaces)'
 slow+='|Hold/path_trace|LeavingOutTest\.ChangesNoImage/(path_trace|full|transparency|rsm_gather)|Horizons\.WithLayersTheTower'
-slow+='|DistanceFields\.EveryVariant|ShippedMemory'
+slow+='|DistanceFields\.EveryVariant|ShippedMemory|Editor(Monkey|Endurance)\.TenThousand'
 sources() { git -C "$root" ls-files '*.cpp' '*.h' | grep -v '^shaders/'; }
 
 # build FOLDER CMAKE_ARGUMENT... [-- TARGET...]: the build of a stage beside the usual one.

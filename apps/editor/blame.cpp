@@ -11,101 +11,175 @@ struct Place {
     int x = 0, y = 0;
 };
 
-// Within a pixel of the place, since filters and rounding move things.
-std::optional<Place> near(const Image& image, Place place, Fault fault) {
-    for (int reach = 0; reach <= 1; ++reach)
-        for (int y = place.y - reach; y <= place.y + reach; ++y)
-            for (int x = place.x - reach; x <= place.x + reach; ++x)
-                if (x >= 0 && y >= 0 && x < image.width && y < image.height && faultAt(image, x, y) == fault)
-                    return Place{x, y};
-    return {};
+// How bad; of a cause and what comes of it the cause is no better: what is no number or infinite makes the
+// same or a black pixel, but nothing black makes a number none.
+int badness(Fault fault) {
+    switch (fault) {
+    case Fault::NotANumber:
+    case Fault::Infinite:
+        return 3;
+    case Fault::Negative:
+        return 2;
+    case Fault::Black:
+        return 1;
+    case Fault::None:
+        break;
+    }
+    return 0;
 }
 
-std::optional<Place> anywhere(const Image& image, Fault fault) {
+struct Bad {
+    Fault fault = Fault::None;
+    Place place;
+};
+
+// The worst within a pixel of the place, since filters and rounding move things; the place itself first.
+Bad near(const Image& image, Place place) {
+    Bad worst;
+    for (int reach = 0; reach <= 1; ++reach)
+        for (int y = place.y - reach; y <= place.y + reach; ++y)
+            for (int x = place.x - reach; x <= place.x + reach; ++x) {
+                if (x < 0 || y < 0 || x >= image.width || y >= image.height) continue;
+                const Fault fault = faultAt(image, x, y);
+                // Beside the place black is most often right.
+                if (reach > 0 && fault == Fault::Black) continue;
+                if (badness(fault) > badness(worst.fault)) worst = {fault, {x, y}};
+            }
+    return worst;
+}
+
+Bad anywhere(const Image& image) {
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
-            if (faultAt(image, x, y) == fault) return Place{x, y};
+            if (const Fault fault = faultAt(image, x, y); badness(fault) == badness(Fault::Infinite))
+                return {fault, {x, y}};
     return {};
 }
 
 class Search {
 public:
-    Search(Session& session, Fault fault)
+    explicit Search(Session& session)
         : session_(session)
-        , plan_(session.renderer()->plan())
-        , fault_(fault) {}
+        , plan_(session.renderer()->plan()) {}
 
-    Blame from(const PortRef& port, Place place) {
-        Blame found;
-        found.fault = fault_;
-        PortRef at = port;
-        while (true) {
-            found.path.push_back(at.text());
-            found.port = at;
-            found.x = place.x;
-            found.y = place.y;
-            if (!seen_.insert(at).second) break; // a history leads back
-            const std::optional<std::pair<PortRef, Place>> next = input(at, place);
-            if (!next) break;
-            at = next->first;
-            place = next->second;
+    // Of a pixel that is right, or clamped so: the nearest port behind it that holds what is no number or
+    // infinite there.
+    std::optional<Blame> behind(const PortRef& port, Place place) {
+        std::string why;
+        const Image here = session_.read(port, why);
+        std::vector<PortRef> next{port};
+        std::set<PortRef> met{port};
+        for (size_t i = 0; i < next.size(); ++i) {
+            for (const auto& [source, image] : texturesOf(next[i])) {
+                if (!met.insert(source).second) continue;
+                const Bad bad = near(image, scaled(place, here, image));
+                if (badness(bad.fault) == badness(Fault::Infinite)) return from(source, bad.place, bad.fault);
+                next.push_back(source);
+            }
         }
-        found.why = fmt::format("{} of '{}' is {} there, and nothing that it reads is", found.port.port,
-                                found.port.pass, faultName(fault_));
+        return {};
+    }
+
+    Blame from(const PortRef& port, Place place, Fault fault) {
+        Blame found{
+            .fault = fault, .port = port, .x = place.x, .y = place.y, .path = {port.text()}, .why = {}};
+        seen_.insert(port); // a history leads back
+        while (const auto next = input(found.port, {found.fault, {found.x, found.y}})) {
+            found.port = next->port;
+            found.fault = next->bad.fault;
+            found.x = next->bad.place.x;
+            found.y = next->bad.place.y;
+            found.path.push_back(next->port.text());
+            seen_.insert(next->port);
+        }
+        found.why = fmt::format("{} of '{}' is {} there, and nothing that it reads is wrong", found.port.port,
+                                found.port.pass, faultName(found.fault));
         return found;
     }
 
 private:
-    // The pass whose steps make a port, after `same` and shared resources.
+    struct Cause {
+        PortRef port;
+        Bad bad;
+    };
+
+    // The pass whose steps make a port.
     [[nodiscard]] const PlanPass* maker(const PortRef& port) const {
         for (const PlanPass& pass : plan_.passes)
             if (pass.name == port.pass) return &pass;
         return nullptr;
     }
-    [[nodiscard]] PortRef ownerOf(int resource) const {
-        return plan_.resources[static_cast<size_t>(resource)].port;
+    [[nodiscard]] const PortInfo* info(const PortRef& port) const {
+        const PlanPass* pass = maker(port);
+        const PassType* type = pass != nullptr ? session_.registry().find(pass->type) : nullptr;
+        return type != nullptr ? type->port(port.port) : nullptr;
+    }
+    // Whether a port holds light or the like, of which 0 and less is wrong; of directions, depths and motion
+    // it is not.
+    [[nodiscard]] bool holdsLight(const PortRef& port) const {
+        const PortInfo* held = info(port);
+        return held == nullptr || held->content.space == Space::Any || held->content.space == Space::Display;
     }
 
-    std::optional<std::pair<PortRef, Place>> input(const PortRef& port, Place place) {
+    static Place scaled(Place place, const Image& from, const Image& to) {
+        return {place.x * to.width / std::max(from.width, 1), place.y * to.height / std::max(from.height, 1)};
+    }
+    // What the port's pass reads as textures, by who made it.
+    [[nodiscard]] std::vector<std::pair<PortRef, Image>> texturesOf(const PortRef& port) const {
+        const PlanPass* pass = maker(port);
+        const PassType* type = pass != nullptr ? session_.registry().find(pass->type) : nullptr;
+        std::vector<std::pair<PortRef, Image>> textures;
+        if (type == nullptr) return textures;
+        for (const PortInfo& input : type->ports) {
+            const auto held = pass->ports.find(input.name);
+            if (input.direction != PortDirection::Input || input.kind != PortKind::Texture ||
+                held == pass->ports.end() || held->second < 0)
+                continue;
+            const PortRef source = plan_.resources[static_cast<size_t>(held->second)].port;
+            std::string why;
+            Image image = session_.read(source, why);
+            if (!image.empty()) textures.emplace_back(source, std::move(image));
+        }
+        return textures;
+    }
+
+    // The worst of what a port's pass reads there, if it can be the cause of what came of it.
+    std::optional<Cause> input(const PortRef& port, const Bad& bad) {
         const PlanPass* pass = maker(port);
         const PassType* type = pass != nullptr ? session_.registry().find(pass->type) : nullptr;
         if (type == nullptr) return {};
         std::string why;
         const Image here = session_.read(port, why);
-        for (const PortInfo& info : type->ports) {
-            if (info.direction != PortDirection::Input) continue;
-            if (isModule(info.kind)) {
-                if (auto found = behindModule(*pass, info.name)) return found;
-                continue;
-            }
-            const auto held = pass->ports.find(info.name);
-            if (held == pass->ports.end() || held->second < 0 || info.kind != PortKind::Texture) continue;
-            const PortRef source = ownerOf(held->second);
-            const Image image = session_.read(source, why);
-            if (image.empty() || source == port) continue;
-            const Place there{place.x * image.width / std::max(here.width, 1),
-                              place.y * image.height / std::max(here.height, 1)};
-            if (const auto found = near(image, there, fault_)) return std::pair(source, *found);
+        std::optional<Cause> worst;
+        for (const auto& [source, image] : texturesOf(port)) {
+            if (seen_.contains(source)) continue;
+            const Bad there = near(image, scaled(bad.place, here, image));
+            const bool counts = badness(there.fault) >= badness(bad.fault) && there.fault != Fault::None;
+            if (counts && (badness(there.fault) == badness(Fault::Infinite) || holdsLight(source)) &&
+                (!worst || badness(there.fault) > badness(worst->bad.fault)))
+                worst = Cause{source, there};
         }
-        return {};
+        for (const PortInfo& input : type->ports)
+            if (!worst && input.direction == PortDirection::Input && isModule(input.kind))
+                worst = behindModule(*pass, input.name);
+        return worst;
     }
 
-    // Black is no fault of what a ray may fetch anywhere.
-    std::optional<std::pair<PortRef, Place>> behindModule(const PlanPass& pass, const std::string& input) {
+    // A ray may have fetched it anywhere. Only what is never right counts there.
+    std::optional<Cause> behindModule(const PlanPass& pass, const std::string& input) {
         const auto behind = pass.inputPasses.find(input);
-        if (fault_ == Fault::Black || behind == pass.inputPasses.end()) return {};
+        if (behind == pass.inputPasses.end()) return {};
         for (const int index : behind->second) {
             const PlanPass& provider = plan_.passes[static_cast<size_t>(index)];
             for (const auto& [name, resource] : provider.ports) {
-                const PassType* type = session_.registry().find(provider.type);
-                const PortInfo* info = type != nullptr ? type->port(name) : nullptr;
-                if (info == nullptr || info->direction == PortDirection::Input ||
-                    info->kind != PortKind::Texture)
+                const PortRef port{provider.name, name};
+                const PortInfo* held = info(port);
+                if (held == nullptr || held->direction == PortDirection::Input ||
+                    held->kind != PortKind::Texture || seen_.contains(port))
                     continue;
                 std::string why;
-                const PortRef port{provider.name, name};
-                const Image image = session_.read(port, why);
-                if (const auto found = anywhere(image, fault_)) return std::pair(port, *found);
+                if (const Bad bad = anywhere(session_.read(port, why)); bad.fault != Fault::None)
+                    return Cause{port, bad};
             }
         }
         return {};
@@ -113,7 +187,6 @@ private:
 
     Session& session_;
     const Plan& plan_;
-    Fault fault_;
     std::set<PortRef> seen_;
 };
 
@@ -152,7 +225,6 @@ std::optional<Blame> blame(Session& session, const PortRef& port, int x, int y) 
     const Image image = session.read(port, why);
     if (image.empty() || x < 0 || y < 0 || x >= image.width || y >= image.height) return {};
     const Fault fault = faultAt(image, x, y);
-    if (fault == Fault::None) return {};
     // All that the plan makes becomes readable, for one frame that is the present one again.
     const std::vector<PortRef> before = session.shown;
     for (const PlanPass& pass : session.renderer()->plan().passes) {
@@ -168,7 +240,15 @@ std::optional<Blame> blame(Session& session, const PortRef& port, int x, int y) 
     }
     session.follow();
     std::optional<Blame> found;
-    if (session.renderAgain()) found = Search(session, fault).from(port, {x, y});
+    // In the frame in which it came up: what accumulates keeps it when what made it is right again.
+    Fault now = Fault::None;
+    const auto isThere = [&] {
+        now = faultAt(session.read(port, why), x, y);
+        return fault != Fault::None && now == fault;
+    };
+    if (session.renderAgain(isThere) && now == fault)
+        found = fault == Fault::None ? Search(session).behind(port, {x, y})
+                                     : Search(session).from(port, {x, y}, fault);
     session.shown = before;
     session.follow();
     return found;

@@ -1,12 +1,12 @@
 // What the editor does by key, menu and palette.
 #include "blame.h"
-#include "core/files.h"
 #include "edit/commands.h"
 #include "editor.h"
-#include "measure/run_stats.h"
 #include <algorithm>
+#include <cstdio>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <iterator>
 
 namespace kestrel::edit {
 namespace {
@@ -32,21 +32,8 @@ void Editor::addFileActions() {
     add("Open...", "Ctrl+O", [this] { browse({}); });
     add("Save", "Ctrl+S", [this] { save(session_.document.graph().file); });
     add("Save as...", "Ctrl+Shift+S", [this] {
-        ask_ = Ask::SaveAs;
-        askFresh_ = true;
-        typed_ = session_.document.graph().file.string();
-    });
-    add("Copy the command line", "Ctrl+Shift+C", [this] {
-        const std::string line = session_.commandLine(viewport.a);
-        ImGui::SetClipboardText(line.c_str());
-        say("copied: " + line);
-    });
-    add("Write stats.json", "", [this] {
-        if (session_.renderer() == nullptr || session_.frames() == 0) return;
-        RunStats stats = gatherStats(*session_.renderer(), session_.profile(), session_.driver());
-        stats.graphPath = session_.document.graph().file.string();
-        writeFile("stats.json", statsJson(stats));
-        say("wrote stats.json");
+        ask("Save as", session_.document.graph().file.string(),
+            [this](const std::string& typed) { save(typed); });
     });
     add("Quit", "Ctrl+Q", [this] { askToClose(); });
 }
@@ -122,15 +109,15 @@ void Editor::addEditActions() {
     add(
         "Frame around the selection...", "Ctrl+G",
         [this] {
-            ask_ = Ask::Frame;
-            askFresh_ = true;
-            typed_.clear();
+            ask("Title", "", [this](const std::string& typed) {
+                say(session_.apply("Frame", [&](Graph& graph) { addFrame(graph, typed, canvas.selection); }));
+            });
         },
         selected);
     add("Note...", "N", [this] {
-        ask_ = Ask::Note;
-        askFresh_ = true;
-        typed_.clear();
+        ask("Note", "", [this](const std::string& typed) {
+            say(session_.apply("Note", [&](Graph& graph) { addNote(graph, typed, canvas.placeForNew()); }));
+        });
     });
 }
 
@@ -173,16 +160,12 @@ void Editor::addPassActions() {
             pinned.erase(found);
     });
     add(
-        "Make the port an output, or none", "O",
-        [this] {
-            const PortRef port = *canvas.picked;
-            const auto& outputs = session_.document.graph().outputs;
-            const bool is = std::any_of(outputs.begin(), outputs.end(),
-                                        [&](const GraphOutput& output) { return output.port == port; });
-            say(session_.apply(is ? "No output" : "Output",
-                               [&](Graph& graph) { setOutput(graph, session_.registry(), port, !is); }));
-        },
-        [this] { return canvas.picked.has_value(); });
+        "Make a port an output, or none", "O", [this] { toggleOutput(); },
+        [this] { return canvas.picked || !selectedPass().empty(); });
+    add(
+        "Connect...", "K", [this] { connectByName(); }, one);
+    add(
+        "Disconnect...", "Shift+K", [this] { disconnectByName(); }, some);
     add(
         "Edit the properties", "Enter", [this] { properties_.focus = true; }, one);
 }
@@ -197,6 +180,12 @@ void Editor::addViewActions() {
     add("Right", "Right", [this] { canvas.step(session_, {1, 0}); });
     add("Up", "Up", [this] { canvas.step(session_, {0, -1}); });
     add("Down", "Down", [this] { canvas.step(session_, {0, 1}); });
+    add("Nearer to the canvas", "=", [this] { canvas.zoomBy(1.25); });
+    add("Farther from the canvas", "-", [this] { canvas.zoomBy(0.8); });
+    add("Move the selection left", "Ctrl+Shift+Left", [this] { nudge({-20, 0}); });
+    add("Move the selection right", "Ctrl+Shift+Right", [this] { nudge({20, 0}); });
+    add("Move the selection up", "Ctrl+Shift+Up", [this] { nudge({0, -20}); });
+    add("Move the selection down", "Ctrl+Shift+Down", [this] { nudge({0, 20}); });
     add("Hold the picture and compare", "H", [this] {
         if (viewport.holds()) {
             viewport.letGo();
@@ -208,6 +197,17 @@ void Editor::addViewActions() {
     add("One picture, split, slider", "Tab", [this] {
         viewport.layout = static_cast<Viewport::Layout>((static_cast<int>(viewport.layout) + 1) % 3);
     });
+    add("Slider to the left", "[", [this] { viewport.slider = std::max(viewport.slider - 0.05f, 0.0f); });
+    add("Slider to the right", "]", [this] { viewport.slider = std::min(viewport.slider + 0.05f, 1.0f); });
+    add("Colour, code values, one channel, heat map", "D", [this] {
+        auto& mode = viewport.development.mode;
+        mode = static_cast<Development::Mode>((static_cast<int>(mode) + 1) %
+                                              static_cast<int>(std::size(developmentNames)));
+    });
+    add("Size of the picture's pixels", "Z", [this] {
+        viewport.zoom = viewport.zoom == 0 ? 1 : viewport.zoom >= 8 ? 0 : 2 * viewport.zoom;
+    });
+    add("Values of a pixel...", "I", [this] { askPixel(); });
     add("Where did this pixel go wrong?", "B", [this] {
         const auto pixel = viewport.pixel();
         if (!pixel) return say("point at a pixel of the picture first");
@@ -221,15 +221,6 @@ void Editor::addViewActions() {
     add("Automatic range", "R", [this] { viewport.automatic = !viewport.automatic; });
     add("Brighter", "Shift+Up", [this] { viewport.development.exposure += 0.5f; });
     add("Darker", "Shift+Down", [this] { viewport.development.exposure -= 0.5f; });
-    add("Play or pause", "Space", [this] { session_.playing = !session_.playing; });
-    add("Next frame", ".", [this] {
-        session_.playing = false;
-        session_.render();
-    });
-    add("From the first frame", "Home", [this] {
-        session_.restart();
-        framesAtChange_ = session_.frames();
-    });
     add("Dark or light", "F8", [this] {
         theme_.dark = !theme_.dark;
         themeChanged_ = true;
@@ -243,6 +234,25 @@ void Editor::addViewActions() {
         themeChanged_ = true;
     });
     add("Shortcuts", "F1", [this] { shortcuts_ = !shortcuts_; });
+}
+
+void Editor::askPixel() {
+    ask("Pixel: x y, from the left upper corner", "", [this](const std::string& typed) {
+        int x = -1, y = -1;
+        const Image& image = viewport.image();
+        if (std::sscanf(typed.c_str(), "%d %d", &x, &y) != 2 || x < 0 || y < 0 || x >= image.width ||
+            y >= image.height)
+            return say(fmt::format("a pixel of a picture of {} is two numbers", image.sizeText()));
+        viewport.setPixel(x, y);
+    });
+}
+
+void Editor::nudge(glm::dvec2 by) {
+    if (canvas.selection.empty()) return;
+    say(session_.apply("Move", [&](Graph& graph) {
+        keepPlaces(graph, session_.places);
+        movePasses(graph, canvas.selection, by);
+    }));
 }
 
 } // namespace kestrel::edit

@@ -102,20 +102,78 @@ void Editor::swap() {
     palette_.open("In the place of " + pass, std::move(entries));
 }
 
-void Editor::showPort() {
-    if (canvas.picked && (canvas.selection.empty() || canvas.selection.contains(canvas.picked->pass))) {
-        viewport.showPort(*canvas.picked);
-        return;
-    }
+// The port that was picked, else one of the selected pass's by name.
+void Editor::withPort(const std::string& prompt, const std::function<void(const PortRef&)>& then) {
+    if (canvas.picked && (canvas.selection.empty() || canvas.selection.contains(canvas.picked->pass)))
+        return then(*canvas.picked);
     const GraphPass* pass = session_.document.graph().find(selectedPass());
     const PassType* type = pass != nullptr ? session_.registry().find(pass->type) : nullptr;
     if (type == nullptr) return;
     std::vector<Palette::Entry> entries;
     for (const PortInfo& port : type->ports)
         if (!isModule(port.kind))
-            entries.push_back({port.name, port.description,
-                               [this, ref = PortRef{pass->name, port.name}] { viewport.showPort(ref); }});
-    palette_.open("Show which port of " + pass->name, std::move(entries));
+            entries.push_back(
+                {port.name, port.description, [then, ref = PortRef{pass->name, port.name}] { then(ref); }});
+    palette_.open(prompt + " of " + pass->name, std::move(entries));
+}
+
+void Editor::showPort() {
+    withPort("Show which port", [this](const PortRef& port) { viewport.showPort(port); });
+}
+
+void Editor::toggleOutput() {
+    withPort("Which output", [this](const PortRef& port) {
+        const auto& outputs = session_.document.graph().outputs;
+        const bool is = std::any_of(outputs.begin(), outputs.end(),
+                                    [&](const GraphOutput& output) { return output.port == port; });
+        say(session_.apply(is ? "No output" : "Output",
+                           [&](Graph& graph) { setOutput(graph, session_.registry(), port, !is); }));
+    });
+}
+
+// Every wire that could lead into the selected pass or out of it.
+void Editor::connectByName() {
+    const Graph& graph = session_.document.graph();
+    const GraphPass* pass = graph.find(selectedPass());
+    const PassType* type = pass != nullptr ? session_.registry().find(pass->type) : nullptr;
+    if (type == nullptr) return;
+    std::vector<Palette::Entry> entries;
+    const auto offer = [&](const PortRef& from, const PortRef& to, const std::string& detail) {
+        const bool there = std::any_of(graph.edges.begin(), graph.edges.end(), [&](const GraphEdge& edge) {
+            return edge.from == from && edge.to == to;
+        });
+        if (there || !whyNot(graph, session_.registry(), from, to).empty()) return;
+        entries.push_back({from.text() + " -> " + to.text(), detail, [this, from, to] {
+                               say(session_.apply("Connect", [&](Graph& next) {
+                                   connect(next, session_.registry(), from, to);
+                               }));
+                           }});
+    };
+    for (const PortInfo& port : type->ports)
+        for (const GraphPass& other : graph.passes) {
+            const PassType* otherType = session_.registry().find(other.type);
+            if (&other == pass || otherType == nullptr || port.direction == PortDirection::Internal) continue;
+            const PortRef own{pass->name, port.name};
+            for (const PortInfo& end : otherType->ports) {
+                if (end.kind != port.kind || end.direction == PortDirection::Internal) continue;
+                if (port.direction == PortDirection::Input && end.direction == PortDirection::Output)
+                    offer({other.name, end.name}, own, port.description);
+                if (port.direction == PortDirection::Output && end.direction == PortDirection::Input)
+                    offer(own, {other.name, end.name}, end.description);
+            }
+        }
+    palette_.open("Connect", std::move(entries));
+}
+
+void Editor::disconnectByName() {
+    std::vector<Palette::Entry> entries;
+    for (const GraphEdge& edge : session_.document.graph().edges)
+        if (canvas.selection.contains(edge.from.pass) || canvas.selection.contains(edge.to.pass))
+            entries.push_back(
+                {edge.from.text() + " -> " + edge.to.text(), "", [this, to = edge.to] {
+                     say(session_.apply("Disconnect", [&](Graph& graph) { disconnect(graph, {to}); }));
+                 }});
+    palette_.open("Disconnect", std::move(entries));
 }
 
 void Editor::browse(const std::filesystem::path& folder) {
@@ -137,11 +195,12 @@ void Editor::browse(const std::filesystem::path& folder) {
         if (each.is_directory(ignored))
             entries.push_back({each.path().filename().string() + "/", here.string(),
                                [this, file = each.path()] { browse(file); }});
-        else if (extension == ".json" || extension == ".glb" || extension == ".gltf")
+        else if (extension == ".json" || extension == ".glb" || extension == ".gltf" || extension == ".png" ||
+                 extension == ".exr" || extension == ".hdr")
             entries.push_back(
                 {each.path().filename().string(), here.string(), [this, file = each.path()] { open(file); }});
     }
-    palette_.open("Open a graph or a scene", std::move(entries));
+    palette_.open("Open a graph, a scene or a picture", std::move(entries));
 }
 
 // ---- clipboard, names
@@ -162,10 +221,11 @@ void Editor::paste() {
 }
 
 void Editor::rename() {
-    renaming_ = selectedPass();
-    ask_ = Ask::Rename;
-    askFresh_ = true;
-    typed_ = renaming_;
+    const std::string pass = selectedPass();
+    ask("Name", pass, [this, pass](const std::string& typed) {
+        say(session_.apply("Rename " + pass, [&](Graph& graph) { renamePass(graph, pass, typed); }));
+        if (session_.document.graph().find(typed) != nullptr) canvas.selection = {typed};
+    });
 }
 
 } // namespace kestrel::edit

@@ -1,9 +1,8 @@
 // kestrel-editor: views, edits and compares graphs in a window.
 #include "core/files.h"
-#include "plugin/loader.h"
+#include "named.h"
 #include "window.h"
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <fmt/format.h>
 
 namespace {
@@ -17,37 +16,12 @@ struct Arguments {
     bool light = false;
 };
 
-// A graph as it is named, else among those that come with Kestrel.
-std::filesystem::path graphFile(const std::string& graph) {
-    std::error_code ignored;
-    const std::filesystem::path shipped = shareFolder() / "graphs" / graph;
-    return !std::filesystem::exists(graph, ignored) && std::filesystem::is_regular_file(shipped, ignored)
-               ? shipped
-               : std::filesystem::path(graph);
-}
-
-Extent sizeOf(const std::string& text) {
-    unsigned width = 0, height = 0;
-    const size_t cross = text.find('x');
-    if (cross != std::string::npos) {
-        std::from_chars(text.data(), text.data() + cross, width);
-        std::from_chars(text.data() + cross + 1, text.data() + text.size(), height);
-    }
-    if (width < 1 || height < 1 || width > 16'384 || height > 16'384)
-        throw InputError(fmt::format("--size {}: it must be WIDTHxHEIGHT with 1 to 16384 each", text));
-    return {width, height, 1};
-}
-
 int run(const Arguments& arguments) {
-    static const Registry registry = [] {
-        Registry loaded;
-        loadPlugins(loaded, pluginFolders());
-        return loaded;
-    }();
+    Registry& registry = loadedRegistry();
     Graph graph;
     if (!arguments.graph.empty()) graph = loadGraph(graphFile(arguments.graph));
     edit::SessionOptions options;
-    options.size = sizeOf(arguments.size);
+    options.size = parseSize(arguments.size);
     options.scene = arguments.scene;
     edit::Theme theme;
     theme.scale = arguments.scale;
@@ -55,7 +29,9 @@ int run(const Arguments& arguments) {
     edit::Window window({1600, 900, 1}, theme);
     edit::Session session(registry, window.context().capabilities(), window.context().driver(),
                           std::move(graph), options);
+    edit::Plugins plugins(registry, pluginFolders());
     edit::Editor editor(session, theme);
+    editor.plugins = &plugins;
     window.run(editor, theme);
     return static_cast<int>(ExitStatus::Done);
 }

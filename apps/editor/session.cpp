@@ -37,15 +37,19 @@ std::string Session::apply(const std::string& name, const std::function<void(Gra
 }
 
 void Session::follow() {
-    if (taken_ == document.revision() && takenShown_ == shown) return;
+    if (taken_ == document.revision() && takenShown_ == shown && takenApart_ == apart) return;
+    // Another port to look at changes no picture, but asks for a frame that makes it.
+    const bool other = taken_ != document.revision();
     taken_ = document.revision();
     takenShown_ = shown;
+    takenApart_ = apart;
     problems_.clear();
     stuck_ = false;
     try {
         located_ = locatedGraph(document.graph(), document.text());
         take();
         due_ = true;
+        if (other) touch();
         profile_ = {};
     } catch (const Error& error) {
         fail(error.problems());
@@ -59,12 +63,15 @@ void Session::take() {
     const std::string source = options_.scene.empty() ? located_.sceneSource : options_.scene;
     const std::filesystem::path folder = options_.scene.empty() ? located_.file.parent_path() : "";
     const std::string key = source + "\n" + folder.string() + "\n" + setupText(located_.sceneSetup);
+    // What is looked at keeps its memory to itself: so does what is to share it with nobody.
     std::vector<PortRef> previews;
-    for (const PortRef& port : shown)
-        if (const GraphPass* pass = located_.find(port.pass))
-            if (const PassType* type = registry_.find(pass->type);
-                type != nullptr && type->port(port.port) != nullptr)
-                previews.push_back(port);
+    for (const std::vector<PortRef>* ports : {&shown, &apart})
+        for (const PortRef& port : *ports)
+            if (const GraphPass* pass = located_.find(port.pass))
+                if (const PassType* type = registry_.find(pass->type);
+                    type != nullptr && type->port(port.port) != nullptr &&
+                    std::find(previews.begin(), previews.end(), port) == previews.end())
+                    previews.push_back(port);
     if (renderer_ == nullptr || key != sceneKey_) {
         if (source.empty()) throw InputError("the graph names no scene: open one, or choose a built-in one");
         Scene scene = loadScene(source, folder, options_.sceneOptions,
@@ -80,7 +87,10 @@ void Session::take() {
         } else {
             renderer_->setScene(std::move(scene));
         }
+        renderer_->setPaused(!timeRuns_);
         sceneKey_ = key;
+        ownCamera_.reset(); // of the scene before
+        cameraName_.clear();
     }
     // Ports of the graph before may be gone: they go first, and new ones come after it.
     std::vector<PortRef> both;
@@ -91,8 +101,12 @@ void Session::take() {
     renderer_->setPreviews(previews);
 }
 
-bool Session::render() {
-    if (renderer_ == nullptr || stuck_ || (!playing && !due_)) return false;
+void Session::touch() {
+    due_ = true;
+    settled_ = 0;
+}
+
+bool Session::frame() {
     try {
         profile_.add(renderer_->frame());
     } catch (const Error& error) {
@@ -101,20 +115,32 @@ bool Session::render() {
     }
     due_ = false;
     ++frames_;
+    ++settled_;
     return true;
 }
 
-bool Session::renderAgain() {
-    if (renderer_ == nullptr || stuck_) return false;
-    const std::uint32_t frames = std::max(renderer_->nextFrame(), 1u);
+bool Session::render() {
+    if (renderer_ == nullptr || stuck_ || (!playing && !due_)) return false;
+    return frame();
+}
+
+void Session::beginAgain() {
+    if (renderer_ == nullptr) return;
+    const double at = time();
     renderer_->restart();
-    try {
-        for (std::uint32_t i = 0; i < frames; ++i) renderer_->frame();
-    } catch (const Error& error) {
-        fail(error.problems());
-        return false;
+    renderer_->setTime(at);
+    touch();
+}
+
+bool Session::renderAgain(const std::function<bool()>& enough) {
+    if (renderer_ == nullptr || stuck_) return false;
+    const std::uint64_t count = std::max<std::uint64_t>(settled_, 1);
+    setTimeRuns(false);
+    beginAgain();
+    for (std::uint64_t i = 0; i < count; ++i) {
+        if (!frame()) return false;
+        if (enough && enough()) break;
     }
-    ++frames_;
     return true;
 }
 
@@ -124,7 +150,7 @@ bool Session::reloadShaders() {
         if (!renderer_->reloadIfChanged()) return false;
         problems_.clear();
         stuck_ = false;
-        due_ = true;
+        touch();
         return true;
     } catch (const Error& error) {
         fail(error.problems());
@@ -138,7 +164,7 @@ void Session::setSize(Extent size) {
     options_.size = size;
     try {
         if (renderer_ != nullptr) renderer_->setSize(size);
-        due_ = true;
+        touch();
         profile_ = {};
     } catch (const Error& error) {
         options_.size = before;
@@ -154,7 +180,7 @@ void Session::setScene(const std::string& scene) {
 
 void Session::restart() {
     if (renderer_ != nullptr) renderer_->restart();
-    due_ = true;
+    touch();
     profile_ = {};
 }
 
@@ -177,15 +203,6 @@ std::string Session::leftOut(const std::string& pass) const {
     for (const LeftOut& item : renderer_->plan().leftOut)
         if (item.what == pass) return item.why;
     return {};
-}
-
-std::string Session::commandLine(const PortRef& port) const {
-    std::string text = "kestrel render " + document.graph().file.string();
-    if (!options_.scene.empty()) text += " --scene " + options_.scene;
-    text += fmt::format(" --size {}x{}", options_.size.width, options_.size.height);
-    if (renderer_ != nullptr && renderer_->nextFrame() > 1)
-        text += fmt::format(" --frames {}", renderer_->nextFrame());
-    return text + fmt::format(" --output {}={}.exr", port.text(), port.text());
 }
 
 } // namespace kestrel::edit

@@ -4,6 +4,7 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <chrono>
 #include <imgui.h>
 
 namespace kestrel::edit {
@@ -49,6 +50,7 @@ Window::Window(Extent size, Theme& theme) {
     glfwSetCharCallback(window, [](GLFWwindow* of, unsigned) { woken(of); });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* of, int, int) { woken(of); });
     glfwSetWindowRefreshCallback(window, woken);
+    glfwSetWindowCloseCallback(window, woken);
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr; // the editor keeps its own state
@@ -75,6 +77,7 @@ void Window::frame(Editor& editor, Theme& theme, const std::function<void(KeyEve
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
     }
+    const auto begin = std::chrono::steady_clock::now();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     KeyEvents keys = std::exchange(keys_, {});
@@ -83,6 +86,7 @@ void Window::frame(Editor& editor, Theme& theme, const std::function<void(KeyEve
     for (const std::filesystem::path& file : std::exchange(dropped_, {})) editor.open(file);
     editor.show(keys);
     ImGui::Render();
+    ownMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     const Extent extent = context_->framebufferExtent();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, static_cast<GLsizei>(extent.width), static_cast<GLsizei>(extent.height));
@@ -90,23 +94,34 @@ void Window::frame(Editor& editor, Theme& theme, const std::function<void(KeyEve
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glfwSetWindowTitle(handle(*context_), editor.title().c_str());
-    ++frames_;
+}
+
+void Window::turn(Editor& editor, Theme& theme, const std::function<void(KeyEvents&)>& before) {
+    // Nothing moves: sleep until somebody does something, or a file may have changed.
+    if (settle_ > 0)
+        --settle_;
+    else if (!editor.busy() && !before) {
+        glfwWaitEventsTimeout(0.5);
+        if (settle_ == 0 && dropped_.empty() && editor.rests()) return;
+    }
+    frame(editor, theme, before);
+    if (context_->present()) return;
+    glfwSetWindowShouldClose(handle(*context_), GLFW_FALSE);
+    editor.askToClose();
+    settle_ = 3;
 }
 
 void Window::run(Editor& editor, Theme& theme, const std::function<void(KeyEvents&)>& before) {
-    while (!editor.done()) {
-        // Nothing moves: sleep until somebody does something, or a file may have changed.
-        if (settle_ > 0)
-            --settle_;
-        else if (!editor.busy() && !before)
-            glfwWaitEventsTimeout(0.5);
-        frame(editor, theme, before);
-        if (!context_->present()) {
-            glfwSetWindowShouldClose(handle(*context_), GLFW_FALSE);
-            editor.askToClose();
-            settle_ = 3;
-        }
-    }
+    while (!editor.done()) turn(editor, theme, before);
+}
+
+void Window::runFor(Editor& editor, Theme& theme, double seconds) {
+    const double end = glfwGetTime() + seconds;
+    while (!editor.done() && glfwGetTime() < end) turn(editor, theme, {});
+}
+
+void Window::resize(Extent size) {
+    glfwSetWindowSize(handle(*context_), static_cast<int>(size.width), static_cast<int>(size.height));
 }
 
 Image Window::screenshot() const {

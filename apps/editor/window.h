@@ -25,14 +25,19 @@ public:
     void frame(Editor& editor, Theme& theme, const std::function<void(KeyEvents&)>& before);
     // What is on the screen, RGB, rows from the top.
     [[nodiscard]] Image screenshot() const;
-    // Frames drawn, and how long the editor's own part of the last took, ms: all but the graph.
-    [[nodiscard]] std::uint64_t frames() const { return frames_; }
+    void resize(Extent size);
+    // As run(), for so many seconds.
+    void runFor(Editor& editor, Theme& theme, double seconds);
+    // How long the last frame took until there was something to draw, ms: all of the editor's but drawing.
+    [[nodiscard]] double ownMs() const { return ownMs_; }
 
 private:
+    void turn(Editor& editor, Theme& theme, const std::function<void(KeyEvents&)>& before);
+
     std::unique_ptr<gl::Context> context_;
     KeyEvents keys_;
     std::vector<std::filesystem::path> dropped_;
-    std::uint64_t frames_ = 0;
+    double ownMs_ = 0;
     int settle_ = 3; // frames to draw before it may rest: popups and hovers need a few
 };
 

@@ -80,6 +80,18 @@ public:
         frame();
     }
     bool ctrl = false, shift = false, alt = false; // held while the mouse works
+    // A letter's key stays down for some frames, and with it a button of the mouse.
+    void hold(char key, glm::dvec2 screen, int button, int frames) {
+        ++actions_;
+        moveTo(screen);
+        button_[button] = true;
+        frame();
+        down_ = key;
+        wait(frames);
+        down_ = 0;
+        button_[button] = false;
+        wait(2);
+    }
     void wait(int frames) {
         for (int i = 0; i < frames; ++i) frame();
     }
@@ -131,6 +143,8 @@ public:
             io.AddKeyEvent(ImGuiMod_Alt, alternate);
             const std::pair<const char*, ImGuiKey> known[] = {
                 {"Enter", ImGuiKey_Enter}, {"Esc", ImGuiKey_Escape}, {"Down", ImGuiKey_DownArrow}, {"Up", ImGuiKey_UpArrow}};
+            for (int letter = 0; letter < 26; ++letter)
+                io.AddKeyEvent(static_cast<ImGuiKey>(ImGuiKey_A + letter), down_ == 'A' + letter);
             for (const auto& [name, key] : known) io.AddKeyEvent(key, down_ > 0 && edit::chordOf(name).key == down_);
 #endif
         });

@@ -10,6 +10,7 @@ void Canvas::show(Session& session, const Theme& theme, const Say& say) {
     const ImVec2 corner = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
     corner_ = {corner.x, corner.y};
     size_ = glm::max(glm::dvec2(size.x, size.y), glm::dvec2(1));
+    scale_ = double(theme.scale);
     layOut(session, theme);
     ImGui::InvisibleButton("canvas", {static_cast<float>(size_.x), static_cast<float>(size_.y)},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
@@ -45,6 +46,7 @@ void Canvas::layOut(Session& session, const Theme& theme) {
     std::erase_if(selection,
                   [&](const std::string& pass) { return session.document.graph().find(pass) == nullptr; });
     if (picked && session.document.graph().find(picked->pass) == nullptr) picked.reset();
+    curves_ = curvesOf(session.document.graph(), boxes_);
     boxesOf_ = session.document.revision();
 }
 
@@ -80,7 +82,7 @@ void Canvas::handle(Session& session, const Say& say) {
 void Canvas::press(Session& session, glm::dvec2 at) {
     const ImGuiIO& io = ImGui::GetIO();
     const Graph& graph = session.document.graph();
-    held_ = hitAt(graph, boxes_, view, at);
+    held_ = hitAt(graph, boxes_, view, at, &curves_);
     began_ = last_ = at;
     moved_ = {0, 0};
     ++gestureNumber_;
@@ -186,7 +188,7 @@ void Canvas::release(Session& session, glm::dvec2 at, const Say& say) {
     switch (gesture) {
     case Gesture::Pan:
         if (still && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) {
-            menuHit = hitAt(session.document.graph(), boxes_, view, at);
+            menuHit = hitAt(session.document.graph(), boxes_, view, at, &curves_);
             wantsMenu = true;
             if (menuHit.kind == Hit::Kind::Pass && !selection.contains(menuHit.pass))
                 selection = {menuHit.pass};
@@ -224,7 +226,7 @@ void Canvas::release(Session& session, glm::dvec2 at, const Say& say) {
 void Canvas::releaseWire(Session& session, glm::dvec2 at, const Say& say) {
     const Graph& graph = session.document.graph();
     const Registry& registry = session.registry();
-    const Hit hit = hitAt(graph, boxes_, view, at);
+    const Hit hit = hitAt(graph, boxes_, view, at, &curves_);
     std::optional<PortRef> other;
     if (hit.kind == Hit::Kind::Port) other = hit.port;
     if (hit.kind == Hit::Kind::Pass) {
@@ -276,7 +278,7 @@ void Canvas::dropOnEdge(Session& session, const Say& say) {
 }
 
 void Canvas::doubleClick(Session& session, glm::dvec2 at, const Say& say) {
-    const Hit hit = hitAt(session.document.graph(), boxes_, view, at);
+    const Hit hit = hitAt(session.document.graph(), boxes_, view, at, &curves_);
     if (hit.kind == Hit::Kind::Pass) wantsRename = hit.pass;
     if (hit.kind == Hit::Kind::Bend)
         attempt(session, "Remove a bend", say, [&](Graph& graph) {
@@ -301,7 +303,8 @@ void Canvas::doubleClick(Session& session, glm::dvec2 at, const Say& say) {
 }
 
 void Canvas::frameAll(const Session& session) {
-    if (const auto all = bounds(session.document.graph(), boxes_)) view.show(all->first, all->second, size_);
+    if (const auto all = bounds(session.document.graph(), boxes_))
+        view.show(all->first, all->second, size_, scale_);
 }
 
 void Canvas::selectAll(const Session& session) {

@@ -4,6 +4,7 @@
 #include "edit/fits.h"
 #include "session.h"
 #include "ui/theme.h"
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -21,6 +22,7 @@ public:
 
     // ---- what menus and keys do, too
     void frameAll(const Session& session);
+    void zoomBy(double factor) { view.zoomAt(size_ * 0.5, factor); } // about the middle
     void selectAll(const Session& session);
     // Selects a pass and brings it into view.
     void goTo(const Session& session, const std::string& pass);
@@ -71,7 +73,10 @@ private:
     [[nodiscard]] ImVec2 screen(glm::dvec2 canvas) const;
 
     std::vector<Box> boxes_;
-    std::uint64_t boxesOf_ = 0; // revision of the document that they are of
+    Curves curves_;                            // of the edges
+    double scale_ = 1;                         // of the theme: the closest that all is shown
+    std::set<std::string, std::less<>> faded_; // passes that are left out of the present plan
+    std::uint64_t boxesOf_ = 0;                // revision of the document that they are of
     glm::dvec2 corner_{0}, size_{0}, pointer_{0};
     bool hovered_ = false;
 

@@ -22,6 +22,9 @@ void Canvas::drawText(const Theme& theme, glm::dvec2 canvas, double size, ImU32 
 }
 
 void Canvas::draw(const Session& session, const Theme& theme) {
+    faded_.clear();
+    if (session.renderer() != nullptr)
+        for (const LeftOut& item : session.renderer()->plan().leftOut) faded_.insert(item.what);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 low(static_cast<float>(corner_.x), static_cast<float>(corner_.y));
     const ImVec2 high(static_cast<float>(corner_.x + size_.x), static_cast<float>(corner_.y + size_.y));
@@ -68,14 +71,22 @@ void Canvas::drawEdges(const Session& session, const Theme& theme) {
         return std::any_of(session.problems().begin(), session.problems().end(),
                            [&](const Marked& marked) { return marked.input == input; });
     };
-    for (const GraphEdge& edge : session.document.graph().edges) {
-        std::vector<ImVec2> points;
-        for (const glm::dvec2& point : curveOf(edge, boxes_)) points.push_back(screen(point));
-        if (points.empty()) continue;
-        const Box* box = boxOf(boxes_, edge.from.pass);
-        const bool faded = !session.leftOut(edge.to.pass).empty() || !session.leftOut(edge.from.pass).empty();
-        const ImU32 colour =
-            wrong(edge.to) ? Theme::mistake() : Theme::port(box->find(edge.from)->kind, faded);
+    const ImVec2 low = list->GetClipRectMin(), high = list->GetClipRectMax();
+    const std::vector<GraphEdge>& edges = session.document.graph().edges;
+    std::vector<ImVec2> points;
+    for (size_t i = 0; i < edges.size(); ++i) {
+        const GraphEdge& edge = edges[i];
+        points.clear();
+        ImVec2 least(1e9f, 1e9f), most(-1e9f, -1e9f);
+        for (const glm::dvec2& point : curves_[i].points) {
+            points.push_back(screen(point));
+            least = {std::min(least.x, points.back().x), std::min(least.y, points.back().y)};
+            most = {std::max(most.x, points.back().x), std::max(most.y, points.back().y)};
+        }
+        if (points.empty() || most.x < low.x || least.x > high.x || most.y < low.y || least.y > high.y)
+            continue;
+        const bool faded = faded_.contains(edge.to.pass) || faded_.contains(edge.from.pass);
+        const ImU32 colour = wrong(edge.to) ? Theme::mistake() : Theme::port(curves_[i].kind, faded);
         const bool chosen = selection.contains(edge.from.pass) || selection.contains(edge.to.pass);
         const float width = std::max(1.0f, static_cast<float>((chosen ? 3.0 : 2.0) * view.zoom));
         list->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, width);
@@ -87,7 +98,7 @@ void Canvas::drawEdges(const Session& session, const Theme& theme) {
 
 void Canvas::drawBox(const Session& session, const Theme& theme, const GraphPass& pass, const Box& box) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const bool faded = !session.leftOut(pass.name).empty();
+    const bool faded = faded_.contains(pass.name);
     const bool wrong =
         std::any_of(session.problems().begin(), session.problems().end(),
                     [&](const Marked& marked) { return marked.pass == pass.name && !marked.input; });
@@ -153,7 +164,7 @@ void Canvas::drawGesture(const Theme& theme) {
 void Canvas::tooltip(const Session& session) {
     if (!hovered_ || gesture_ != Gesture::None) return;
     const Graph& graph = session.document.graph();
-    const Hit hit = hitAt(graph, boxes_, view, pointer_);
+    const Hit hit = hitAt(graph, boxes_, view, pointer_, &curves_);
     std::string text;
     const auto add = [&](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };
     const GraphPass* pass = graph.find(hit.kind == Hit::Kind::Edge ? hit.port.pass : hit.pass);

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <unordered_map>
 
 namespace kestrel::edit {
 namespace {
@@ -64,15 +66,19 @@ Hit portAt(const std::vector<Box>& boxes, const CanvasView& view, glm::dvec2 scr
     return hit;
 }
 
-Hit edgeAt(const Graph& graph, const std::vector<Box>& boxes, const CanvasView& view, glm::dvec2 point) {
+Hit edgeAt(const Graph& graph, const Curves& curves, const CanvasView& view, glm::dvec2 point) {
     double nearest = 6 / view.zoom;
     Hit hit;
-    for (const GraphEdge& edge : graph.edges) {
+    for (size_t i = 0; i < curves.size(); ++i) {
         double along = 0;
-        const double distance = distanceTo(curveOf(edge, boxes), point, along);
+        const double distance = distanceTo(curves[i].points, point, along);
         if (distance > nearest) continue;
         nearest = distance;
-        hit = {.kind = Hit::Kind::Edge, .pass = {}, .port = edge.to, .index = 0, .nearBegin = along < 0.5};
+        hit = {.kind = Hit::Kind::Edge,
+               .pass = {},
+               .port = graph.edges[i].to,
+               .index = 0,
+               .nearBegin = along < 0.5};
     }
     return hit;
 }
@@ -169,21 +175,44 @@ std::vector<glm::dvec2> curveBetween(glm::dvec2 from, glm::dvec2 to) {
     return points;
 }
 
-std::vector<glm::dvec2> curveOf(const GraphEdge& edge, const std::vector<Box>& boxes) {
-    const Box* fromBox = boxOf(boxes, edge.from.pass);
-    const Box* toBox = boxOf(boxes, edge.to.pass);
+namespace {
+
+std::vector<glm::dvec2> curve(const GraphEdge& edge, const Box* fromBox, const Box* toBox) {
     const PortPlace* from = fromBox != nullptr ? fromBox->find(edge.from) : nullptr;
     const PortPlace* to = toBox != nullptr ? toBox->find(edge.to) : nullptr;
     if (from == nullptr || to == nullptr) return {};
     std::vector<glm::dvec2> stops = {from->at};
     stops.insert(stops.end(), edge.bends.begin(), edge.bends.end());
     stops.push_back(to->at);
-    std::vector<glm::dvec2> curve;
+    std::vector<glm::dvec2> points;
     for (size_t i = 0; i + 1 < stops.size(); ++i) {
         const std::vector<glm::dvec2> piece = curveBetween(stops[i], stops[i + 1]);
-        curve.insert(curve.end(), piece.begin() + (i > 0 ? 1 : 0), piece.end());
+        points.insert(points.end(), piece.begin() + (i > 0 ? 1 : 0), piece.end());
     }
-    return curve;
+    return points;
+}
+
+} // namespace
+
+std::vector<glm::dvec2> curveOf(const GraphEdge& edge, const std::vector<Box>& boxes) {
+    return curve(edge, boxOf(boxes, edge.from.pass), boxOf(boxes, edge.to.pass));
+}
+
+Curves curvesOf(const Graph& graph, const std::vector<Box>& boxes) {
+    std::unordered_map<std::string_view, const Box*> byPass;
+    for (const Box& box : boxes) byPass.emplace(box.pass, &box);
+    const auto of = [&](const std::string& pass) {
+        const auto found = byPass.find(pass);
+        return found == byPass.end() ? nullptr : found->second;
+    };
+    Curves curves;
+    for (const GraphEdge& edge : graph.edges) {
+        const Box* from = of(edge.from.pass);
+        const PortPlace* place = from != nullptr ? from->find(edge.from) : nullptr;
+        curves.push_back(
+            {curve(edge, from, of(edge.to.pass)), place != nullptr ? place->kind : PortKind::Texture});
+    }
+    return curves;
 }
 
 void CanvasView::zoomAt(glm::dvec2 screen, double factor) {
@@ -192,24 +221,26 @@ void CanvasView::zoomAt(glm::dvec2 screen, double factor) {
     origin = fixed - screen / zoom;
 }
 
-void CanvasView::show(glm::dvec2 low, glm::dvec2 high, glm::dvec2 size) {
+void CanvasView::show(glm::dvec2 low, glm::dvec2 high, glm::dvec2 size, double closest) {
     constexpr double margin = 30;
     const glm::dvec2 area = glm::max(high - low, glm::dvec2(1)),
                      room = glm::max(size - 2 * margin, glm::dvec2(1));
-    zoom = std::clamp(std::min(room.x / area.x, room.y / area.y), minZoom, 1.0);
+    zoom = std::clamp(std::min(room.x / area.x, room.y / area.y), minZoom, closest);
     origin = (low + high) * 0.5 - size * 0.5 / zoom;
 }
 
-Hit hitAt(const Graph& graph, const std::vector<Box>& boxes, const CanvasView& view, glm::dvec2 screen) {
+Hit hitAt(const Graph& graph, const std::vector<Box>& boxes, const CanvasView& view, glm::dvec2 screen,
+          const Curves* curves) {
     if (Hit port = portAt(boxes, view, screen); port.kind != Hit::Kind::Nothing) return port;
     const glm::dvec2 point = view.toCanvas(screen);
-    for (const GraphEdge& edge : graph.edges)
-        for (size_t i = 0; i < edge.bends.size(); ++i)
-            if (glm::length(view.toScreen(edge.bends[i]) - screen) <= 6)
-                return {.kind = Hit::Kind::Bend, .pass = {}, .port = edge.to, .index = i};
+    for (const GraphEdge& bent : graph.edges)
+        for (size_t i = 0; i < bent.bends.size(); ++i)
+            if (glm::length(view.toScreen(bent.bends[i]) - screen) <= 6)
+                return {.kind = Hit::Kind::Bend, .pass = {}, .port = bent.to, .index = i};
     for (auto box = boxes.rbegin(); box != boxes.rend(); ++box)
         if (box->contains(point)) return {.kind = Hit::Kind::Pass, .pass = box->pass, .port = {}, .index = 0};
-    if (Hit edge = edgeAt(graph, boxes, view, point); edge.kind != Hit::Kind::Nothing) return edge;
+    const Hit edge = edgeAt(graph, curves != nullptr ? *curves : curvesOf(graph, boxes), view, point);
+    if (edge.kind != Hit::Kind::Nothing) return edge;
     for (size_t i = graph.notes.size(); i-- > 0;) {
         const glm::dvec2 low = graph.notes[i].position;
         if (Box{.pass = {}, .low = low, .high = low + glm::dvec2(noteWidth, noteHeight), .ports = {}}
@@ -236,14 +267,13 @@ Names passesIn(const std::vector<Box>& boxes, glm::dvec2 a, glm::dvec2 b) {
 std::vector<PortRef> edgesAcross(const Graph& graph, const std::vector<Box>& boxes, glm::dvec2 a,
                                  glm::dvec2 b) {
     std::vector<PortRef> inputs;
-    for (const GraphEdge& edge : graph.edges) {
-        const std::vector<glm::dvec2> curve = curveOf(edge, boxes);
-        for (size_t i = 0; i + 1 < curve.size(); ++i)
-            if (crosses(a, b, curve[i], curve[i + 1])) {
-                inputs.push_back(edge.to);
+    const Curves curves = curvesOf(graph, boxes);
+    for (size_t e = 0; e < curves.size(); ++e)
+        for (size_t i = 0; i + 1 < curves[e].points.size(); ++i)
+            if (crosses(a, b, curves[e].points[i], curves[e].points[i + 1])) {
+                inputs.push_back(graph.edges[e].to);
                 break;
             }
-    }
     return inputs;
 }
 

@@ -46,6 +46,13 @@ std::optional<std::pair<glm::dvec2, glm::dvec2>> bounds(const Graph& graph, cons
 
 // The curve of an edge as a chain of points, through its bends; empty if an end is not there.
 std::vector<glm::dvec2> curveOf(const GraphEdge& edge, const std::vector<Box>& boxes);
+// Of all edges, in the order of the document.
+struct Curve {
+    std::vector<glm::dvec2> points;
+    PortKind kind = PortKind::Texture;
+};
+using Curves = std::vector<Curve>;
+Curves curvesOf(const Graph& graph, const std::vector<Box>& boxes);
 // From one place to another, leaving rightward and arriving from the left.
 std::vector<glm::dvec2> curveBetween(glm::dvec2 from, glm::dvec2 to);
 
@@ -59,8 +66,8 @@ struct CanvasView {
     // The canvas point under `screen` stays there.
     void zoomAt(glm::dvec2 screen, double factor);
     void pan(glm::dvec2 screen) { origin -= screen / zoom; }
-    // So that the area fills a window of `size` pixels, with a margin; at zoom 1 at most.
-    void show(glm::dvec2 low, glm::dvec2 high, glm::dvec2 size);
+    // So that the area fills a window of `size` pixels, with a margin; at zoom `closest` at most.
+    void show(glm::dvec2 low, glm::dvec2 high, glm::dvec2 size, double closest = 1);
 };
 
 struct Hit {
@@ -74,8 +81,9 @@ struct Hit {
 
 // What lies under a screen point. Ports go before all else and are at least 12 pixels wide at any zoom: of
 // several in reach the nearest. Then bends, boxes (the last in the document lies on top), edges within 6
-// pixels, notes, titles of frames.
-Hit hitAt(const Graph& graph, const std::vector<Box>& boxes, const CanvasView& view, glm::dvec2 screen);
+// pixels, notes, titles of frames. `curves` are those of the graph, where they are known already.
+Hit hitAt(const Graph& graph, const std::vector<Box>& boxes, const CanvasView& view, glm::dvec2 screen,
+          const Curves* curves = nullptr);
 
 // Passes whose boxes a rectangle of the canvas touches.
 Names passesIn(const std::vector<Box>& boxes, glm::dvec2 a, glm::dvec2 b);

@@ -8,8 +8,8 @@
 
 namespace kestrel::edit {
 
-// Every change is a named step. A step is kept as the canonical text of the graph before it, a few kilobytes,
-// so that undoing gives back every byte whatever a command did.
+// Every change is a named step. A step is kept as what of the graph's canonical text was another, so that
+// undoing gives back every byte whatever a command did, and a long day's steps take little.
 class Document {
 public:
     explicit Document(Graph graph = {});
@@ -42,17 +42,23 @@ public:
     void markSaved(const std::filesystem::path& file);
 
 private:
+    // The text on the other side: that on this side, but between its first `begin` and its last `end` bytes.
     struct Step {
-        std::string name, text; // of the graph on the other side
+        std::string name;
+        size_t begin = 0, end = 0;
+        std::string middle;
         std::uint64_t gesture = 0;
+        [[nodiscard]] std::string from(const std::string& here) const;
     };
-    void take(const std::string& text);
+    static Step stepTo(const std::string& there, const std::string& here, std::string name,
+                       std::uint64_t gesture);
+    void take(std::string text);
     void forgetOldest();
 
     Graph graph_;
     std::string text_, saved_;
     std::vector<Step> undo_, redo_;
-    size_t bytes_ = 0; // of the texts in undo_
+    size_t bytes_ = 0; // of the middles in undo_
     std::uint64_t revision_ = 1;
 };
 

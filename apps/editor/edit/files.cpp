@@ -61,7 +61,8 @@ std::string Autosave::save(const Document& document) {
                                   writeFile(file, text);
                                   return {};
                               } catch (const Error& error) {
-                                  return error.problems().front().message;
+                                  return "what is not saved cannot be kept: " +
+                                         error.problems().front().text();
                               }
                           });
     return failure;

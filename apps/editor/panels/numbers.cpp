@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <optional>
 #include <set>
 
 namespace kestrel::edit {
@@ -74,7 +75,7 @@ void Numbers::showTimes(const Session& session) {
 }
 
 // Resources as bars over the steps of the frame; those that share an object stand in one row.
-void Numbers::showResources(const Session& session) {
+void Numbers::showResources(const Session& session, const std::function<void(const PortRef&)>& apart) {
     const Renderer* renderer = session.renderer();
     if (renderer == nullptr) return;
     const Plan& plan = renderer->plan();
@@ -83,11 +84,14 @@ void Numbers::showResources(const Session& session) {
     const float row = ImGui::GetTextLineHeightWithSpacing(), names = ImGui::GetFontSize() * 12;
     const float width = std::max(ImGui::GetContentRegionAvail().x - names, 50.0f);
     const auto steps = static_cast<float>(std::max<size_t>(plan.steps.size(), 1));
+    ImGui::TextDisabled("a click gives a resource memory of its own, and says whether the picture changed");
     ImDrawList* list = ImGui::GetWindowDrawList();
+    std::optional<PortRef> chosen;
     for (size_t object = 0; object < plan.objects.size(); ++object) {
         const ImVec2 corner = ImGui::GetCursorScreenPos();
         ImGui::InvisibleButton(fmt::format("##object{}", object).c_str(), {names + width, row});
-        const bool hovered = ImGui::IsItemHovered();
+        const bool hovered = ImGui::IsItemHovered(), clicked = ImGui::IsItemClicked();
+        const float pointer = ImGui::GetIO().MousePos.x;
         const std::string size = bytesText(plan.objects[object].desc.totalBytes());
         list->AddText(corner, ImGui::GetColorU32(ImGuiCol_Text), size.c_str());
         std::string tip = describe(plan.objects[object].desc);
@@ -104,6 +108,10 @@ void Numbers::showResources(const Session& session) {
             list->PushClipRect(low, high, true);
             list->AddText({low.x + 3, low.y}, IM_COL32_WHITE, resource.port.text().c_str());
             list->PopClipRect();
+            const auto& alone = session.apart;
+            if (std::find(alone.begin(), alone.end(), resource.port) != alone.end())
+                list->AddRect(low, high, IM_COL32(255, 170, 50, 255), 2, 0, 2);
+            if (clicked && pointer >= low.x && pointer <= high.x) chosen = resource.port;
             tip += fmt::format("\n{}: {}, {}", resource.port.text(), bytesText(resource.desc.totalBytes()),
                                !resource.transient ? resource.history ? "with last frame's" : "stays"
                                : resource.firstStep == resource.lastStep
@@ -112,6 +120,7 @@ void Numbers::showResources(const Session& session) {
         }
         if (hovered) ImGui::SetTooltip("%s", tip.c_str());
     }
+    if (chosen) apart(*chosen); // compiles anew: the plan is another then
 }
 
 void Numbers::showLeftOut(const Session& session, const std::function<void(const std::string&)>& goTo) {

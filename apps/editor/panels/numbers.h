@@ -2,6 +2,7 @@
 // why.
 #pragma once
 #include "session.h"
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,7 +12,8 @@ namespace kestrel::edit {
 class Numbers {
 public:
     void showTimes(const Session& session);
-    void showResources(const Session& session);
+    // A click on a resource asks for memory of its own for it, or takes it back.
+    void showResources(const Session& session, const std::function<void(const PortRef&)>& apart);
     void showLeftOut(const Session& session, const std::function<void(const std::string&)>& goTo);
     // Takes the last frame in; once a frame.
     void add(const Session& session);

@@ -159,7 +159,10 @@ void Properties::showProperty(Session& session, const GraphPass& pass, const Pro
     if (focus && &property == &session.registry().find(pass.type)->properties.front())
         ImGui::SetKeyboardFocusHere();
     Value value = propertyValue(pass, property);
-    if (widget(property, value))
+    const bool changed = widget(property, value);
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    middles[property.name] = {(low.x + high.x) / 2, (low.y + high.y) / 2};
+    if (changed)
         apply(session, fmt::format("Set {}.{}", pass.name, property.name),
               [&](Graph& graph) { setProperty(graph, session.registry(), pass.name, property.name, value); });
     ImGui::PopItemWidth();

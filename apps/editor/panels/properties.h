@@ -2,6 +2,7 @@
 #pragma once
 #include "session.h"
 #include <functional>
+#include <map>
 #include <string>
 
 namespace kestrel::edit {
@@ -11,6 +12,8 @@ public:
     // Of one pass; empty: the graph's own (name, scene, variables, outputs).
     void show(Session& session, const std::string& pass, const std::function<void(const std::string&)>& say);
     bool focus = false; // the first widget takes the keyboard
+    // Where the widget of a property was drawn last, its middle on the screen: for tests.
+    std::map<std::string, glm::vec2> middles;
 
 private:
     void showPass(Session& session, const GraphPass& pass, const PassType& type);

@@ -1,5 +1,6 @@
 #include "panels/viewport.h"
 #include "image/flip.h"
+#include "image/io.h"
 #include "image/metrics.h"
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,18 @@ void Viewport::hold() {
     if (first_.image.empty()) return;
     second_ = Picture{
         .port = first_.port, .image = first_.image, .whyNot = {}, .frame = 0, .developed = {}, .texture = {}};
+    heldStill_ = true;
+    errorOf_ = 0;
+    if (layout == Layout::One) layout = Layout::Slider;
+}
+
+void Viewport::holdFile(const std::filesystem::path& file) {
+    Picture held;
+    const kestrel::Picture read = readPicture(file);
+    const bool coded = read.format == ImageFormat::Png && read.image.channels >= 3;
+    held.image = coded ? srgbToLinear(read.image) : read.image;
+    held.title = file.filename().string();
+    second_ = std::move(held);
     heldStill_ = true;
     errorOf_ = 0;
     if (layout == Layout::One) layout = Layout::Slider;
@@ -67,37 +80,41 @@ void Viewport::Picture::makeTexture(const Development& development) {
     texture.upload(pixels.data());
 }
 
-void Viewport::show(Session& session) {
+void Viewport::show(Session& session, const std::function<void(const std::string&)>& say) {
     first_.follow(session, a);
     if (layout != Layout::One && !heldStill_) second_.follow(session, b);
     if (automatic && !first_.image.empty()) automaticRange(first_.image, development);
     bar();
+    sceneBar_.show(session, say);
     draw(session);
 }
 
 void Viewport::bar() {
-    ImGui::PushItemWidth(ImGui::GetFontSize() * 7);
-    int mode = static_cast<int>(development.mode);
+    const float em = ImGui::GetFontSize();
+    // Beside the item before where there is room, else beneath it.
+    const auto next = [&](float width) {
+        const float spacing = ImGui::GetStyle().ItemSpacing.x;
+        const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+        if (ImGui::GetItemRectMax().x + spacing + width <= right) ImGui::SameLine();
+        ImGui::SetNextItemWidth(width);
+    };
+    int mode = static_cast<int>(development.mode), shown = static_cast<int>(layout);
+    ImGui::SetNextItemWidth(7 * em);
     if (ImGui::Combo("##mode", &mode, developmentNames, IM_ARRAYSIZE(developmentNames)))
         development.mode = static_cast<Development::Mode>(mode);
-    ImGui::SameLine();
-    ImGui::DragFloat("##exposure", &development.exposure, 0.05f, -16, 16, "exposure %.2f");
-    ImGui::SameLine();
-    ImGui::PushItemWidth(ImGui::GetFontSize() * 5);
-    ImGui::DragFloat("##low", &development.low, 0.01f, 0, 0, "from %.3g");
-    ImGui::SameLine();
-    ImGui::DragFloat("##high", &development.high, 0.01f, 0, 0, "to %.3g");
-    ImGui::PopItemWidth();
-    ImGui::SameLine();
-    ImGui::Checkbox("auto", &automatic);
-    ImGui::SameLine();
-    int shown = static_cast<int>(layout);
+    next(7 * em);
     if (ImGui::Combo("##layout", &shown, "one\0split\0slider\0")) layout = static_cast<Layout>(shown);
-    ImGui::PopItemWidth();
+    next(7 * em);
+    ImGui::DragFloat("##exposure", &development.exposure, 0.05f, -16, 16, "exposure %.2f");
+    next(5 * em);
+    ImGui::DragFloat("##low", &development.low, 0.01f, 0, 0, "from %.3g");
+    next(5 * em);
+    ImGui::DragFloat("##high", &development.high, 0.01f, 0, 0, "to %.3g");
+    next(4 * em);
+    ImGui::Checkbox("auto", &automatic);
 }
 
-// Mean square and FLIP of `a` to `b`, which stands for the reference.
-std::string Viewport::errorText() const {
+std::string Viewport::error() const {
     if (layout == Layout::One || first_.image.empty() || second_.image.empty()) return {};
     if (!first_.image.sameSize(second_.image)) return "sizes differ";
     return error_;
@@ -121,6 +138,7 @@ void Viewport::draw(Session& session) {
     ImVec2 room = ImGui::GetContentRegionAvail();
     const float beneath = ImGui::GetTextLineHeightWithSpacing() * (pinned.empty() ? 4.5f : 12.0f);
     room.y = std::max(room.y - beneath, 40.0f);
+    middle_ = {corner.x + room.x / 2, corner.y + room.y / 2};
     ImGui::InvisibleButton("picture", {std::max(room.x, 1.0f), std::max(room.y, 1.0f)});
     const bool hovered = ImGui::IsItemHovered(), active = ImGui::IsItemActive();
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -142,11 +160,13 @@ void Viewport::draw(Session& session) {
             drawPicture(second_, low, high, slider, 1);
             const float x = low.x + (high.x - low.x) * slider;
             list->AddLine({x, low.y}, {x, high.y}, IM_COL32(255, 255, 255, 200), 2);
-            if (active)
+            if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
+                onSlider_ = hovered && std::abs(ImGui::GetIO().MousePos.x - x) < 10;
+            if (active && onSlider_)
                 slider = std::clamp((ImGui::GetIO().MousePos.x - low.x) / (high.x - low.x), 0.0f, 1.0f);
         }
         const ImVec2 foot(low.x + 4, high.y - ImGui::GetTextLineHeight() - 4);
-        const std::string error = errorText();
+        const std::string error = this->error();
         list->AddText({foot.x + 1, foot.y + 1}, IM_COL32(0, 0, 0, 255), error.c_str());
         list->AddText(foot, IM_COL32_WHITE, error.c_str());
         if (split) drawPicture(second_, {low.x + half, low.y}, {high.x + half, high.y}, 0, 1);
@@ -154,7 +174,7 @@ void Viewport::draw(Session& session) {
         const int x = static_cast<int>(std::floor((mouse.x - low.x) / scale)),
                   y = static_cast<int>(std::floor((mouse.y - low.y) / scale));
         const bool inside = x >= 0 && y >= 0 && x < first_.image.width && y < first_.image.height;
-        if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) held_ = inside && !held_;
+        if (hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Right) && !flown_) held_ = inside && !held_;
         if (hovered && inside && !held_) pixel_ = {x, y};
         if (held_ && pixel_) {
             const ImVec2 at(low.x + (static_cast<float>(pixel_->first) + 0.5f) * scale,
@@ -163,6 +183,8 @@ void Viewport::draw(Session& session) {
         }
     }
     list->PopClipRect();
+    if (layout != Layout::Slider) onSlider_ = false;
+    moveCamera(session, hovered, room.y);
     inspector();
     pins(session);
 }
@@ -200,7 +222,8 @@ void Viewport::drawPicture(Picture& picture, ImVec2 low, ImVec2 high, float from
     list->AddImage(textureId(picture.texture), {low.x + width * from, low.y}, {low.x + width * to, high.y},
                    {from, 0}, {to, 1});
     const std::string name =
-        (heldStill_ && &picture == &second_ ? "held: " : "") + picture.port.text() +
+        (heldStill_ && &picture == &second_ ? "held: " : "") +
+        (picture.title.empty() ? picture.port.text() : picture.title) +
         (picture.whyNot.empty() ? "" : " (the last good picture: " + picture.whyNot + ")");
     const ImVec2 at(low.x + width * from + 4, low.y + 3);
     list->AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 255), name.c_str());
@@ -210,7 +233,7 @@ void Viewport::drawPicture(Picture& picture, ImVec2 low, ImVec2 high, float from
 void Viewport::inspector() {
     const Image& image = first_.image;
     if (!pixel_ || image.empty()) {
-        ImGui::TextUnformatted("a pixel's values: point at it; right click holds it");
+        ImGui::TextWrapped("a pixel's values: point at it; right click holds it");
         return;
     }
     int place[] = {std::min(pixel_->first, image.width - 1), std::min(pixel_->second, image.height - 1)};
@@ -228,7 +251,7 @@ void Viewport::inspector() {
         std::replace(other.begin(), other.end(), '\n', ' ');
         values += "   |   " + other;
     }
-    ImGui::TextUnformatted(values.c_str());
+    ImGui::TextWrapped("%s", values.c_str());
     ImGui::TextUnformatted(neighboursText(image, place[0], place[1], 0).c_str());
 }
 

@@ -2,6 +2,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <array>
+#include <imgui.h>
 #include <utility>
 
 namespace kestrel::edit {
@@ -47,6 +48,14 @@ Chord chordOf(const std::string& text) {
         if (rest == name) chord.key = key;
     if (chord.key == 0 && rest.size() == 1) chord.key = static_cast<unsigned char>(rest[0]);
     return chord.key == 0 ? Chord() : chord;
+}
+
+bool keyIsDown(char letter) {
+#if IMGUI_VERSION_NUM < 18700
+    return ImGui::IsKeyDown(letter); // the numbers of the window system, here GLFW's
+#else
+    return ImGui::IsKeyDown(static_cast<ImGuiKey>(ImGuiKey_A + (letter - 'A')));
+#endif
 }
 
 } // namespace kestrel::edit

@@ -16,6 +16,9 @@ struct Chord {
 std::string chordText(const Chord& chord);
 Chord chordOf(const std::string& text);
 
+// Whether a letter's key ('A' to 'Z') is held; within a frame of Dear ImGui.
+bool keyIsDown(char letter);
+
 // Keys that went down since the last frame, also by repetition.
 using KeyEvents = std::vector<Chord>;
 

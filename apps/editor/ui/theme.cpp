@@ -39,6 +39,7 @@ void Theme::apply() const {
     style.FrameRounding = 3;
     style.GrabRounding = 3;
     style.WindowBorderSize = 1;
+    style.FrameBorderSize = dark ? 0.0f : 1.0f; // fields are as white as what they lie on
     style.ScaleAllSizes(scale);
     ImGui::GetStyle() = style;
 }
@@ -59,7 +60,7 @@ ImU32 Theme::canvas() const { return dark ? IM_COL32(28, 30, 34, 255) : IM_COL32
 ImU32 Theme::grid() const { return dark ? IM_COL32(255, 255, 255, 14) : IM_COL32(0, 0, 0, 18); }
 ImU32 Theme::box() const { return dark ? IM_COL32(52, 56, 64, 255) : IM_COL32(255, 255, 255, 255); }
 ImU32 Theme::text(bool faded) const {
-    const int alpha = faded ? 110 : 255;
+    const int alpha = faded ? (dark ? 120 : 150) : 255;
     return dark ? IM_COL32(228, 230, 234, alpha) : IM_COL32(24, 26, 30, alpha);
 }
 ImU32 Theme::outline(bool selected) const {
