@@ -83,8 +83,8 @@ format)
     echo "$(sources | wc -l) files stand as .clang-format has them"
     ;;
 sanitize)
-    # What needs no GL: one program a folder of the framework. The packaged libraries are not instrumented.
-    tests=(core image scene reference shader graph draw execute measure)
+    # What needs no GL: one program a folder of the framework, and what editing does to a graph. The packaged libraries are not instrumented.
+    tests=(core image scene reference shader graph draw execute measure editor)
     build "$root/build-sanitize" -DKESTREL_CONFIG=sanitize -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -- "${tests[@]/#/test_}"
     # One after the other on each core; what a program says is told if it fails.
     check() {

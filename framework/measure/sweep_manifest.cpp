@@ -60,8 +60,8 @@ void addFile(FactJson& files, const std::string& name, const std::filesystem::pa
 }
 
 // What a graph with its settings names besides itself: the path of its camera, and pictures. Which property
-// is a file's name only its pass knows (beside the scene's file, or in the working folder); a text that is
-// the name of a file there is taken for one.
+// is a file's name only its pass knows (beside the graph's file, the scene's, or in the working folder); a
+// text that is the name of a file there is taken for one.
 FactJson filesNamed(const Sweep& sweep, const std::filesystem::path& graphFile,
                     const std::vector<SweepSetting>& settings) {
     FactJson files = FactJson::object();
@@ -79,7 +79,7 @@ FactJson filesNamed(const Sweep& sweep, const std::filesystem::path& graphFile,
     for (const SweepSetting& setting : settings)
         if (const size_t at = setting.text.find('='); at != std::string::npos)
             texts.push_back(setting.text.substr(at + 1));
-    std::set<std::filesystem::path> folders;
+    std::set<std::filesystem::path> folders{graphFile.parent_path()};
     for (const SweepScene& scene : sweep.scenes)
         folders.insert(isBuiltin(scene.source) ? "." : sweepSceneFile(sweep, scene).parent_path());
     for (const std::string& text : texts)

@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Seed{"transparency", {"transparent", "picture"}, "nan", 0, {"tone", "image"}},
                     Seed{"svao", {"blur", "signal"}, "negative", 0, {"blur", "result"}},
                     Seed{"horizon_ao", {"horizons", "view_depth"}, "nan", 0, {"blur", "result"}, 64}),
-    [](const auto& info) { return std::string(info.param.graph); });
+    [](const auto& each) { return std::string(each.param.graph); });
 
 // An accumulated picture keeps what came up in one frame: that frame is gone back to.
 TEST_F(EditorWindow, BlameGoesBackToTheFrameInWhichItCameUp) {

@@ -73,6 +73,18 @@ protected:
     void SetUp() override {
         if (window_ == nullptr) GTEST_SKIP() << "no display, and no Xvfb to make one";
         start("ray_ao.json");
+        resizeTo({1280, 760, 1}); // a test before may have changed it
+        editor_->canvas.frameAll(*session_);
+        person_->wait(2);
+    }
+    void resizeTo(Extent size) {
+        window_->resize(size);
+        for (int i = 0; i < 200 && window_->context().framebufferExtent() != size; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            person_->wait(1);
+        }
+        ASSERT_EQ(window_->context().framebufferExtent(), size);
+        person_->wait(2);
     }
     void TearDown() override {
         editor_.reset();

@@ -61,7 +61,7 @@ TEST_F(EditorWindow, TheSavedGraphGivesTheSamePicture) {
     person_->press("Ctrl+S");
     const Graph saved = loadGraph(file_);
     RenderOptions options;
-    options.size = {96, 54, 1};
+    options.size = session_->size();
     Renderer headless(saved, allPasses(),
                       loadScene(saved.sceneSource, file_.parent_path(), {}, saved.sceneSetup),
                       window_->context().capabilities(), options);

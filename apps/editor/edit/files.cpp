@@ -55,16 +55,15 @@ std::string Autosave::save(const Document& document) {
     }
     if (!document.modified() || document.revision() == revision_) return failure;
     revision_ = document.revision();
-    writing_ = std::async(std::launch::async,
-                          [file = copyOf(document.graph().file), text = document.text()]() -> std::string {
-                              try {
-                                  writeFile(file, text);
-                                  return {};
-                              } catch (const Error& error) {
-                                  return "what is not saved cannot be kept: " +
-                                         error.problems().front().text();
-                              }
-                          });
+    writing_ = std::async(
+        std::launch::async, [file = copyOf(document.graph().file), text = document.text()]() -> std::string {
+            try {
+                writeFile(file, text);
+                return {};
+            } catch (const Error& error) {
+                return "what is not saved cannot be kept: " + error.problems().front().text();
+            }
+        });
     return failure;
 }
 
