@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
-#include <glm/gtc/matrix_transform.hpp>
 
 namespace kestrel::edit {
 namespace {
