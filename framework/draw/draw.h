@@ -23,6 +23,8 @@ struct DrawState {
     std::optional<glm::uvec2> viewport = {}; // without attachments: the size of the rasterized area
     // Without attachments: the size of a second one, which shaders choose by gl_ViewportIndex 1.
     std::optional<glm::uvec2> secondViewport = {};
+    // drawScene without vertex attributes: gl_VertexID / 3 is the triangle's number, its rest the corner.
+    bool byNumber = false;
     std::uint32_t instances = 1; // how often drawScene draws each triangle (gl_InstanceID)
 
     static DrawState overwrite() {

@@ -192,6 +192,7 @@ bool GpuScene::uploadTopology(const Geometry& geometry) {
 
 void GpuScene::linkVertexArray() {
     vertexArray_ = gl::VertexArray("scene");
+    noVertices_ = gl::VertexArray("scene by number");
     vertexArray_.setIndices(indices_);
     constexpr std::uint32_t texel = 16;
     vertexArray_.setAttribute(location::position, positions_, 3, texel, 0);
@@ -255,7 +256,7 @@ void GpuScene::bind(const gl::Program& program) const {
 void GpuScene::draw(const DrawState& state, const std::vector<TriangleClass>& classes,
                     const gl::Program& program) const {
     applyDrawState(state);
-    glBindVertexArray(vertexArray_.name());
+    glBindVertexArray(state.byNumber ? noVertices_.name() : vertexArray_.name());
     const int first = program.uniform(firstTriangle);
     for (const TriangleClass drawn : classes) {
         KESTREL_CHECK(drawn < TriangleClass::Count);
@@ -265,6 +266,12 @@ void GpuScene::draw(const DrawState& state, const std::vector<TriangleClass>& cl
             drawn == TriangleClass::OpaqueDoubleSided || drawn == TriangleClass::MaskedDoubleSided;
         setCulling(doubleSided ? Cull::None : state.cull);
         if (first >= 0) glProgramUniform1ui(program.name(), first, range.first);
+        if (state.byNumber) {
+            glDrawArraysInstanced(GL_TRIANGLES, static_cast<GLint>(3 * range.first),
+                                  static_cast<GLsizei>(3 * range.count),
+                                  static_cast<GLsizei>(state.instances));
+            continue;
+        }
         const auto* offset = reinterpret_cast<const void*>(size_t{range.first} * 3 * sizeof(std::uint32_t));
         glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT, offset,
                                 static_cast<GLsizei>(state.instances));

@@ -48,6 +48,7 @@ private:
     gl::Buffer materials_, lights_;
     gl::Buffer positions_, previousPositions_, vertices_, indices_, triangles_;
     gl::VertexArray vertexArray_;
+    gl::VertexArray noVertices_; // of draws by number
     Geometry::Range ranges_[static_cast<size_t>(TriangleClass::Count)];
     std::uint32_t triangleCount_ = 0;
     bool moves_ = false; // previous positions differ

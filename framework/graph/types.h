@@ -171,6 +171,7 @@ struct FragmentLists {
     Blended blended = Blended::Tested;
     bool counted = true;  // the bounds tell how many fragments each pixel has
     bool shifted = false; // buckets have equally many fragments, not equal parts of the depth range
+    bool planes = false;  // a fragment keeps how its triangle's depth changes over its pixel
     friend bool operator==(const FragmentLists&, const FragmentLists&) = default;
 };
 

@@ -13,6 +13,8 @@
 //   consumer
 //     calls its own switches is nothing to its providers. Both end with the module's text. A library file
 //     that a module includes sees the program's defines, as everywhere.
+//   - `#include <part:FILE>` in a module file goes on in another file: once an instance, with M, defines and
+//     macros as if its text stood there.
 //   - Conditionals are judged from the defines. An include in a branch that is surely taken is expanded, in
 //   one that
 //     is surely not taken it is dropped. Where the defines do not decide (a macro that a file defines

@@ -105,12 +105,16 @@ bool isIdentifier(std::string_view text) {
 }
 
 std::optional<IncludeTarget> includeTargetOf(std::string_view rest) {
-    constexpr std::string_view port = "<port:";
+    const auto between = [rest](std::string_view opening) {
+        return std::string(trimmed(rest.substr(opening.size(), rest.size() - opening.size() - 1)));
+    };
+    constexpr std::string_view port = "<port:", part = "<part:";
     if (rest.starts_with(port) && rest.ends_with('>'))
-        return IncludeTarget{true,
-                             std::string(trimmed(rest.substr(port.size(), rest.size() - port.size() - 1)))};
+        return IncludeTarget{IncludeTarget::Port, between(port)};
+    if (rest.starts_with(part) && rest.ends_with('>'))
+        return IncludeTarget{IncludeTarget::Part, between(part)};
     if (rest.size() < 2 || rest.front() != '"' || rest.find('"', 1) != rest.size() - 1) return std::nullopt;
-    return IncludeTarget{false, std::string(rest.substr(1, rest.size() - 2))};
+    return IncludeTarget{IncludeTarget::Library, std::string(rest.substr(1, rest.size() - 2))};
 }
 
 std::optional<MacroLine> macroLineOf(const Directive& directive) {

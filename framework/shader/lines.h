@@ -25,10 +25,10 @@ struct Directive {
 };
 std::optional<Directive> directiveOf(std::string_view code);
 
-// What an #include asks for: the module at a port (<port:NAME>) or a library file ("PATH"). Nothing for
-// anything else.
+// What an #include asks for: the module at a port (<port:NAME>), a part of the module itself (<part:PATH>) or
+// a library file ("PATH"). Nothing for anything else.
 struct IncludeTarget {
-    bool isPort = false;
+    enum Kind { Library, Port, Part } kind = Library;
     std::string name; // of the port, or the path
 };
 std::optional<IncludeTarget> includeTargetOf(std::string_view rest);

@@ -64,16 +64,20 @@ void StageComposer::problem(const OpenFile& file, int line, std::string message)
     problems_.push_back({{file.path, line}, std::move(message)});
 }
 
-void StageComposer::appendFile(const std::string& path, const std::string& text, const Scope& scope,
-                               Truth included) {
+std::set<std::string> StageComposer::appendFile(const std::string& path, const std::string& text,
+                                                const Scope& scope, Truth included) {
     OpenFile file{path, scope, sourceIndex(path), included, {}, {}};
     dependencies_.insert(path);
     out_ += fmt::format("#line 1 {}\n", file.source);
     for (const ShaderLine& line : shaderLines(text)) appendLine(file, line);
     checkConditionalsClosed(file);
-    // A module's macros end with its text: the next instance may have other values.
-    if (scope.kind != Scope::Module) return;
-    for (const std::string& name : file.macros) {
+    return std::move(file.macros);
+}
+
+// A module's macros end with its text: the next instance may have other values.
+void StageComposer::appendModule(const std::string& path, const std::string& text, const Scope& scope,
+                                 Truth included) {
+    for (const std::string& name : appendFile(path, text, scope, included)) {
         out_ += fmt::format("#undef {}\n", name);
         macros_.erase(name);
     }
@@ -142,15 +146,17 @@ void StageComposer::takeInclude(OpenFile& file, const ShaderLine& line, std::str
     bool appended = false;
     if (active(file) != Truth::No) {
         const std::optional<IncludeTarget> target = includeTargetOf(what);
-        if (target && target->isPort) {
-            appended = includePort(file, line, target->name);
-        } else if (target) {
-            appended = includeLibrary(file, line, target->name);
-        } else {
+        if (!target) {
             problem(file, line.number,
-                    fmt::format("cannot read '#include {}': write #include \"folder/file.glsl\" or "
-                                "#include <port:NAME>",
+                    fmt::format("cannot read '#include {}': write #include \"folder/file.glsl\", "
+                                "#include <port:NAME> or, in a module, #include <part:folder/file.glsl>",
                                 what));
+        } else if (target->kind == IncludeTarget::Port) {
+            appended = includePort(file, line, target->name);
+        } else if (target->kind == IncludeTarget::Part) {
+            appended = includePart(file, line, target->name);
+        } else {
+            appended = includeLibrary(file, line, target->name);
         }
     }
     if (appended) {
@@ -179,6 +185,30 @@ bool StageComposer::includeLibrary(OpenFile& file, const ShaderLine& line, const
     switchScope(file.scope, scope);
     appendFile(path, *text, scope, Truth::Yes);
     switchScope(scope, file.scope);
+    return true;
+}
+
+bool StageComposer::includePart(OpenFile& file, const ShaderLine& line, const std::string& path) {
+    if (file.scope.kind != Scope::Module) {
+        problem(file, line.number,
+                fmt::format("only a module has parts ('{}'): include a library file", path));
+        return false;
+    }
+    if (active(file) == Truth::Unknown) {
+        problem(file, line.number,
+                fmt::format("the part '{}' is included where the module's defines do not decide "
+                            "whether it is compiled",
+                            path));
+        return false;
+    }
+    if (!parts_.insert({file.scope.prefix, path}).second) return false;
+    const std::string* text = library_.find(path);
+    if (!text) {
+        problem(file, line.number, library_.missing(path));
+        return false;
+    }
+    const std::set<std::string> macros = appendFile(path, *text, file.scope, Truth::Yes);
+    file.macros.insert(macros.begin(), macros.end());
     return true;
 }
 
@@ -214,7 +244,7 @@ bool StageComposer::includePort(OpenFile& file, const ShaderLine& line, const st
     instances_[prefix] = {&instance, active(file)};
     const Scope scope{Scope::Module, prefix, &instance.defines, &instance.modules, file.scope.depth + 1};
     switchScope(file.scope, scope);
-    appendFile(instance.file, *text, scope, active(file));
+    appendModule(instance.file, *text, scope, active(file));
     switchScope(scope, file.scope);
     return true;
 }

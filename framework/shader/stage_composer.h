@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kestrel {
@@ -47,11 +48,15 @@ private:
         int line = 0;
     };
 
-    void appendFile(const std::string& path, const std::string& text, const Scope& scope, Truth included);
+    // The macros that the file and its parts define.
+    std::set<std::string> appendFile(const std::string& path, const std::string& text, const Scope& scope,
+                                     Truth included);
+    void appendModule(const std::string& path, const std::string& text, const Scope& scope, Truth included);
     void appendLine(OpenFile& file, const ShaderLine& line);
     bool takeDirective(OpenFile& file, const ShaderLine& line, const Directive& directive);
     void takeInclude(OpenFile& file, const ShaderLine& line, std::string_view what);
     bool includeLibrary(OpenFile& file, const ShaderLine& line, const std::string& path);
+    bool includePart(OpenFile& file, const ShaderLine& line, const std::string& path);
     bool includePort(OpenFile& file, const ShaderLine& line, const std::string& port);
     bool mayIncludeInstance(OpenFile& file, const ShaderLine& line, const std::string& prefix,
                             const ModuleInstance& instance);
@@ -78,9 +83,10 @@ private:
     std::string out_;
     std::vector<std::string> sources_;
     std::vector<Extension> extensions_;
-    std::set<std::string> libraries_;           // included so far
-    std::map<std::string, Included> instances_; // by prefix
-    std::map<std::string, MacroState> macros_;  // that files define
+    std::set<std::string> libraries_;                     // included so far
+    std::set<std::pair<std::string, std::string>> parts_; // the same, by module's prefix and path
+    std::map<std::string, Included> instances_;           // by prefix
+    std::map<std::string, MacroState> macros_;            // that files define
 };
 
 } // namespace kestrel

@@ -50,7 +50,8 @@ PassType ABuffer::type() {
         .flag("skipping", &ABuffer::skipping,
               "Passes pixels and buckets whose depths a ray does not have; changes no hit")
         .number("thickness", &ABuffer::thickness, 0, 100, "pixel footprints",
-                "Of a fragment, along the view's axis; of no primitive")
+                "Of a fragment, along the view's axis, about its plane where the store keeps planes and "
+                "about its depth at the pixel's centre where it does not; of no primitive")
         .number("offset", &ABuffer::offset, 0, 100, "pixel footprints",
                 "By which rays start off their surface, with fragments")
         .flag("count_exhausted", &ABuffer::countExhausted, "Reports how many rays ran out of iterations");

@@ -22,7 +22,7 @@ public:
     ABufferLayering layering = ABufferLayering::Multi;
     int steps = 100;
     bool skipping = true;
-    double thickness = 1, offset = 1.5;
+    double thickness = 0.5, offset = 1.5;
     bool countExhausted = false;
 
 private:

@@ -52,6 +52,9 @@ PassType ABufferStore::type() {
                 "where as many fragments lie in each, found by looking at one after the other")
         .flag("decoupled", &ABufferStore::decoupled,
               "Keeps what shading needs apart from what traversal needs")
+        .flag("planes", &ABufferStore::planes,
+              "Keeps with each fragment how its triangle's depth changes over the pixel: what is seen at a "
+              "grazing angle is met where it lies, and needs no thickness")
         .choice("allocation", &ABufferStore::allocation, {"counter", "pages", "counted"},
                 "Addresses from one counter, as in the paper; from one of several, which hand out pages and "
                 "serve tiles of pixels in turn; or from how many fragments each pixel has. Always the last "
@@ -72,6 +75,9 @@ Declaration ABufferStore::declare(const World& world, const Inputs& inputs, cons
     lists.buckets = bucketed ? buckets : 1;
     lists.shifted = bucketed && boundaries == Boundaries::Shifted;
     lists.decoupled = decoupled;
+    lists.planes = planes && lists.blended != Blended::Alone;
+    if (planes && !lists.planes)
+        declaration.leftOut.push_back({"planes", "blended surfaces alone lie where rays meet them"});
     if (inputs["bounds"].desc.lists != inputs["cube_bounds"].desc.lists)
         declaration.problems.push_back({"cube_bounds", "is of another pass than `bounds`"});
     if (structure == Structure::SB && allocation == ABufferAllocation::Counter)
@@ -246,7 +252,7 @@ std::vector<Step> ABufferStore::beginSteps(const Defines& given, const FragmentL
 
 Step ABufferStore::drawStep(const World& world, const FragmentLists& lists, ABufferViews views,
                             bool keepsData, bool fetches) const {
-    Step step = abufferSceneStep(world, lists, views, drawing, fetches, "abuffer/store.frag");
+    Step step = abufferSceneStep(world, lists, views, drawing, fetches, "abuffer/store.frag", true);
     step.uses = {{.port = "nodes", .access = Access::Image, .write = true}};
     step.group = "store";
     if (keepsData) step.uses.push_back({.port = "data", .access = Access::Image, .write = true});
@@ -280,7 +286,9 @@ Step ABufferStore::drawStep(const World& world, const FragmentLists& lists, ABuf
         commands.report("bytes a pixel", 4 * abufferPixelWords(lists));
         commands.report("bytes a fragment", 4 * nodeWords);
         commands.report("bytes of data a fragment", keepsData ? 4 : 0);
-        abufferDrawScene(commands, DrawState::overwrite(), lists, commands.frame().size, views, how, fetches);
+        DrawState state = DrawState::overwrite();
+        state.byNumber = true;
+        abufferDrawScene(commands, state, lists, commands.frame().size, views, how, fetches);
     };
     return step;
 }

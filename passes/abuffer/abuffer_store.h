@@ -22,6 +22,7 @@ public:
     enum class Boundaries : std::uint8_t { Uniform, Shifted };
     Boundaries boundaries = Boundaries::Uniform;
     bool decoupled = true;
+    bool planes = true;
     ABufferAllocation allocation = ABufferAllocation::Counted;
     ABufferDrawing drawing = ABufferDrawing::ByView;
     bool fetch = true;

@@ -13,7 +13,10 @@ std::uint64_t abufferPixels(const FragmentLists& lists, const Extent& frame) {
            shared::abufferFaces * side * side;
 }
 
-int abufferPixelWords(const FragmentLists& lists) {
+namespace {
+
+// What the structure itself has.
+int structureWords(const FragmentLists& lists) {
     switch (lists.structure) {
     case Structure::LL:
         return 1;
@@ -28,9 +31,17 @@ int abufferPixelWords(const FragmentLists& lists) {
     return 2;
 }
 
-int abufferNodeWords(const FragmentLists& lists) {
+int linkWords(const FragmentLists& lists) {
     const bool twoWays = lists.structure == Structure::DLL || lists.structure == Structure::DLLB;
-    const int own = twoWays ? 3 : 2;
+    return twoWays ? 3 : 2;
+}
+
+} // namespace
+
+int abufferPixelWords(const FragmentLists& lists) { return structureWords(lists) + (lists.planes ? 1 : 0); }
+
+int abufferNodeWords(const FragmentLists& lists) {
+    const int own = linkWords(lists) + (lists.planes ? 1 : 0);
     // The link of SB is the triangle itself where data is not decoupled.
     return lists.decoupled || lists.structure == Structure::SB ? own : own + 1;
 }
@@ -57,6 +68,10 @@ Defines abufferDefines(const FragmentLists& lists, const Extent& frame) {
     if (lists.structure == Structure::DLL || lists.structure == Structure::DLLB)
         defines.emplace("TWO_WAYS", "1");
     if (lists.decoupled) defines.emplace("DECOUPLED", "1");
+    if (lists.planes)
+        defines.insert({{"PLANES", "1"},
+                        {"SPREAD_WORD", std::to_string(structureWords(lists))},
+                        {"PLANE_WORD", std::to_string(linkWords(lists))}});
     return defines;
 }
 
@@ -65,13 +80,14 @@ ABufferDrawing abufferDrawing(ABufferDrawing asked, const FragmentLists& lists) 
 }
 
 Step abufferSceneStep(const World& world, const FragmentLists& lists, ABufferViews views,
-                      ABufferDrawing drawing, bool layered, const std::string& fragment) {
+                      ABufferDrawing drawing, bool layered, const std::string& fragment, bool byNumber) {
     Step step{.name = views == ABufferViews::All     ? "views"
                       : views == ABufferViews::Faces ? "faces"
                                                      : "frame",
               .shaders = {"abuffer/scene.vert"},
               .defines = materialDefines(world.facts, lists.blended)};
     step.defines.merge(abufferDefines(lists, world.size));
+    if (byNumber) step.defines.emplace("BY_NUMBER", "1");
     drawing = abufferDrawing(drawing, lists);
     const bool geometry = drawing == ABufferDrawing::GeometryShader;
     if (drawing == ABufferDrawing::ByView || (views == ABufferViews::Frame && !geometry)) {

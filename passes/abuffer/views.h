@@ -13,10 +13,11 @@ namespace kestrel {
 [[nodiscard]] std::uint64_t abufferPixels(const FragmentLists& lists, const Extent& frame);
 
 // Words that a pixel has in `pixels`: SB first node and number of nodes; LL the head; DLL head and tail; LLB
-// the bounds and the heads of the buckets; DLLB also their tails.
+// the bounds and the heads of the buckets; DLLB also their tails. With planes one more: the largest part of
+// its depth by which a fragment's plane changes over the pixel, a float.
 [[nodiscard]] int abufferPixelWords(const FragmentLists& lists);
 // Words of a node in `nodes`: depth, then SB the link to the data, LL and LLB the next node, DLL and DLLB
-// next and previous node, and where data is not decoupled the triangle.
+// next and previous node, with planes the slopes, and where data is not decoupled the triangle.
 [[nodiscard]] int abufferNodeWords(const FragmentLists& lists);
 
 // What shaders of the A-buffer need to know of it (shaders/abuffer/lists.glsl).
@@ -35,10 +36,13 @@ enum class ABufferViews : std::uint8_t { Frame, Faces, All };
 
 // The program of a step that draws the scene's triangles into views, but for its fragment stage, which it
 // calls `fragment`. A geometry shader rounds vertices otherwise than none, for one view as for all.
-// `layered`: faces are the layers of its attachments; otherwise it has none.
+// `layered`: faces are the layers of its attachments; otherwise it has none. `byNumber`: vertices are fetched
+// by the triangle's number, so that fragments know it, and between which depths it lies, without
+// gl_PrimitiveID.
 [[nodiscard]] Step abufferSceneStep(const World& world, const FragmentLists& lists, ABufferViews views,
-                                    ABufferDrawing drawing, bool layered, const std::string& fragment);
-// What it does when it runs, once uniforms are set.
+                                    ABufferDrawing drawing, bool layered, const std::string& fragment,
+                                    bool byNumber = false);
+// What it does when it runs, once uniforms are set; `state` says it if vertices are fetched by number.
 void abufferDrawScene(Commands& commands, DrawState state, const FragmentLists& lists, const Extent& frame,
                       ABufferViews views, ABufferDrawing drawing, bool layered);
 // Nothing, or why this machine cannot draw so.

@@ -6,6 +6,10 @@
 // hits, then, a surface that lies askew may be met in both). Skipping tests the widened interval, so that it changes no
 // hit. With SINGLE_LAYER only the nearest fragment of a pixel is there.
 //
+// PLANES: fragments know their triangles' planes over the pixel. The interval only says which fragments are looked at, and
+// what is met is the plane, where the ray is in the pixel. The paper has no such thing: section 4.2 names thin and
+// grazing surfaces as what a thickness cannot be right for.
+//
 // Once an invocation has spent BUDGET iterations, whatever rays it traced, the ray is exhausted: it ends there as if it
 // had hit something, and is counted with COUNT_EXHAUSTED.
 #include "lib/tracer.glsl"
@@ -65,6 +69,15 @@ uint M(nearestOf)(int pixel) {
 #define LOOKS_AHEAD
 #endif
 
+// By which part of its depth a pixel's fragments may be nearer or farther elsewhere in the pixel.
+float M(spreadOf)(int pixel) {
+#ifdef PLANES
+    return uintBitsToFloat(imageLoad(M(pixels), pixel * PIXEL_WORDS + SPREAD_WORD).r);
+#else
+    return 0.0;
+#endif
+}
+
 #if defined(LOOKS_AHEAD) && LEVELS == 1
 // Between which depths a pixel's fragments lie, as its words say.
 vec2 M(boundsOf)(int pixel) {
@@ -72,162 +85,30 @@ vec2 M(boundsOf)(int pixel) {
     uint a = imageLoad(M(pixels), words).r;
     uint b = imageLoad(M(pixels), words + 1).r;
 #if defined(BUCKETED)
-    return uintBitsToFloat(uvec2(a, b));
+    vec2 bounds = uintBitsToFloat(uvec2(a, b));
 #elif defined(SB)
-    return b > 0u ? vec2(M(depthOf)(a), M(depthOf)(a + b - 1u)) : vec2(3.0e38, -3.0e38);
+    vec2 bounds = b > 0u ? vec2(M(depthOf)(a), M(depthOf)(a + b - 1u)) : vec2(3.0e38, -3.0e38);
 #else
-    return a > 0u ? vec2(M(depthOf)(a), M(depthOf)(b)) : vec2(3.0e38, -3.0e38);
+    vec2 bounds = a > 0u ? vec2(M(depthOf)(a), M(depthOf)(b)) : vec2(3.0e38, -3.0e38);
 #endif
+    return bounds.x <= bounds.y ? abufferWiden(bounds, M(spreadOf)(pixel)) : bounds;
 }
 #endif
 
-#ifdef PROVIDES_TRACER
-
-// The fragment of a list of linked nodes that a ray meets first, whose depths in the pixel are [low, high): 0 if there
-// is none.
-uint M(inList)(uint head, uint tail, float low, float high, bool away) {
-    uint found = 0u;
-#ifdef TWO_WAYS
-    if (!away) {
-        for (uint node = tail; node != 0u; node = M(previousOf)(node)) {
-            ITERATION;
-            ++M(spent);
-            float z = M(depthOf)(node);
-            if (z < low) break;
-            if (z < high) {
-                found = node;
-                break;
-            }
-        }
-        return found;
-    }
-#endif
-    for (uint node = head; node != 0u; node = M(nextOf)(node)) {
-        ITERATION;
-        ++M(spent);
-        float z = M(depthOf)(node);
-        if (z >= high) break;
-        if (z >= low) {
-            found = node;
-            if (away) break; // coming nearer, the last one is met first
-        }
-    }
-    return found;
+// By how much a fragment may be off its depth, either way.
+float M(halfThickness)(ABufferMarch march) {
+    float depth = march.level > 0 ? max(march.from, march.to) : min(march.from, march.to);
+    return 0.5 * THICKNESS * abufferFootprint(M(view), ABUFFER_SHAPE, march.view, depth);
 }
 
-// The same of a pixel.
-uint M(inPixel)(int pixel, float low, float high, bool away) {
-    int words = pixel * PIXEL_WORDS;
-#if defined(SINGLE_LAYER)
-    uint nearest = M(nearestOf)(pixel);
-    float depth = nearest != 0u ? M(depthOf)(nearest) : 0.0;
-    return nearest != 0u && depth >= low && depth < high ? nearest : 0u;
-#elif defined(SB)
-    uint first = imageLoad(M(pixels), words).r;
-    int count = int(imageLoad(M(pixels), words + 1).r);
-    // The first of them that is at least `low`, or coming nearer the last that is below `high`.
-    int begin = 0;
-    if (count > 16) {
-        float wanted = away ? low : high;
-        int end = count;
-        while (begin < end) {
-            ITERATION;
-            int middle = (begin + end) / 2;
-            if (M(depthOf)(first + uint(middle)) < wanted) {
-                begin = middle + 1;
-            } else {
-                end = middle;
-            }
-        }
-    } else {
-        for (; begin < count; ++begin) {
-            ITERATION;
-            if (M(depthOf)(first + uint(begin)) >= (away ? low : high)) break;
-        }
-    }
-    if (!away) --begin;
-    if (begin < 0 || begin >= count) return 0u;
-    float z = M(depthOf)(first + uint(begin));
-    return z >= low && z < high ? first + uint(begin) : 0u;
-#elif defined(BUCKETED)
-    float zMin = uintBitsToFloat(imageLoad(M(pixels), words).r);
-    float zMax = uintBitsToFloat(imageLoad(M(pixels), words + 1).r);
-#ifdef SKIPPING
-#ifdef SHIFTED
-    // Boundaries lie where the buckets begin, one after the other: a bucket ends at the next one's first depth at
-    // the latest.
-    int from = 0;
-    int to = BUCKETS - 1;
-    for (int bucket = 1; bucket <= to; ++bucket) {
-        ITERATION;
-        uint head = imageLoad(M(pixels), words + HEAD_WORD(bucket)).r;
-        float z = head != 0u ? M(depthOf)(head) : 0.0;
-        if (head == 0u || z >= high) {
-            to = bucket - 1;
-        } else if (z < low) {
-            from = bucket;
-        }
-    }
-#else
-    int from = int(abufferBucket(low, zMin, zMax, uint(BUCKETS)));
-    int to = int(abufferBucket(high, zMin, zMax, uint(BUCKETS)));
-#endif
-#else
-    int from = 0;
-    int to = BUCKETS - 1;
-#endif
-    uint found = 0u;
-    int buckets = to - from + 1;
-    for (int i = 0; i < buckets && found == 0u; ++i) {
-        ITERATION;
-        ++M(spent);
-        int bucket = away ? from + i : to - i;
-        uint head = M(headOf)(pixel, bucket);
-#ifdef TWO_WAYS
-        uint tail = imageLoad(M(pixels), words + TAIL_WORD(bucket)).r;
-#else
-        uint tail = 0u;
-#endif
-        found = M(inList)(head, tail, low, high, away);
-    }
-    return found;
-#else
-    uint head = M(headOf)(pixel, 0);
-#ifdef TWO_WAYS
-    uint tail = imageLoad(M(pixels), words + TAIL_WORD(0)).r;
-#else
-    uint tail = 0u;
-#endif
-    return M(inList)(head, tail, low, high, away);
-#endif
+// The depths that a fragment must have to be met in the ray's pixel: [x, y).
+vec2 M(depthsAhead)(ABufferMarch march) {
+    float pad = M(halfThickness)(march);
+    return vec2(min(march.from, march.to) - pad, max(march.from, march.to) + pad);
 }
 
-#endif
-
-// ---- rays
-
-const ABufferSteps M(steps) = ABufferSteps(LEVELS, SAMPLES);
-
-void M(countRay)(bool exhausted) {
-#ifdef COUNT_EXHAUSTED
-    atomicAdd(M(exhausted)[0], 1u);
-    if (exhausted) atomicAdd(M(exhausted)[1], 1u);
-#endif
-}
-
-// The depths that a fragment must have to be met in the ray's pixel: [x, y), widened by `pad` on both sides.
-vec2 M(depthsAhead)(ABufferMarch march, out float pad) {
-    vec2 depths = vec2(min(march.from, march.to), max(march.from, march.to));
-    pad = 0.5 * THICKNESS * abufferFootprint(M(view), ABUFFER_SHAPE, march.view, march.level > 0 ? depths.y : depths.x);
-    return depths + vec2(-pad, pad);
-}
-
-// When a ray meets a fragment of this depth in its pixel.
-float M(timeOf)(ABufferMarch march, float z) {
-    float part = march.to != march.from ? clamp((z - march.from) / (march.to - march.from), 0.0, 1.0) : 0.5;
-    return march.next < rayInfinity ? mix(march.t, march.next, part)
-                                    : march.t + max(z - march.from, 0.0) / abs(march.ray.add.w);
-}
+#include <part:abuffer/ahead.glsl>
+#include <part:abuffer/in_pixel.glsl>
 
 ABufferMarch M(begin)(Ray ray) {
     vec3 fromEye = ray.origin - M(view).position.xyz;
@@ -238,60 +119,7 @@ ABufferMarch M(begin)(Ray ray) {
     return abufferMarch(M(view), ABUFFER_SHAPE, view, fromEye, ray.direction, ray.tMin, ray.tMax);
 }
 
-// To the next pixel that has fragments where the ray is; false if the view is left before. A loop of its own, and
-// nothing but the bounds in it: on a driver that runs both sides of every branch a loop is all that can be left early.
-bool M(goesOn)(inout ABufferMarch march) {
-    while (march.inside) {
-        ITERATION;
-        ++M(spent);
-        abufferAhead(march, M(steps));
-#ifdef LOOKS_AHEAD
-        float pad;
-        vec2 depths = M(depthsAhead)(march, pad);
-#if LEVELS > 1
-        int block = 2 * abufferBlock(march, ABUFFER_SHAPE, MAIN_SIZE);
-        vec2 bounds = uintBitsToFloat(
-            uvec2(imageLoad(M(block_bounds), block).r, imageLoad(M(block_bounds), block + 1).r));
-#else
-        vec2 bounds = M(boundsOf)(ABUFFER_PIXEL(march.view, march.pixel));
-#endif
-        bool skips = bounds.y < depths.x || bounds.x >= depths.y;
-        if (!skips && march.level == 0) break;
-        if (M(spent) > uint(BUDGET)) break;
-        if (skips) {
-            abufferCross(march, M(steps));
-        } else {
-            --march.level;
-        }
-#else
-        break;
-#endif
-    }
-    return march.inside;
-}
-
 #ifdef PROVIDES_TRACER
-
-struct M(Found) {
-    uint node; // 0: nothing, or the ray was exhausted
-    float t;
-    float error;
-    uint view;
-    bool exhausted;
-};
-
-// What the ray meets first in its pixel.
-bool M(meets)(ABufferMarch march, inout M(Found) found) {
-    float pad;
-    vec2 depths = M(depthsAhead)(march, pad);
-    found.node = M(inPixel)(ABUFFER_PIXEL(march.view, march.pixel), depths.x, depths.y, march.ray.add.w > 0.0);
-    if (found.node == 0u) return false;
-    float z = M(depthOf)(found.node);
-    found.t = M(timeOf)(march, z);
-    found.error = 0.5 * abufferFootprint(M(view), ABUFFER_SHAPE, march.view, z) + pad;
-    found.view = march.view;
-    return true;
-}
 
 bool M(traverse)(Ray ray, out M(Found) found) {
     ABufferMarch march = M(begin)(ray);
@@ -347,49 +175,6 @@ Surface M(surface)(Ray ray, Hit hit) {
 #endif // PROVIDES_TRACER
 
 #ifdef PROVIDES_HITS
-
-// Hands on one fragment; true stops.
-bool M(hand)(inout Ray ray, ABufferMarch march, uint node, float z, float pad) {
-    float t = M(timeOf)(march, z);
-    if (t < ray.tMin || t > ray.tMax) return false;
-    float error = 0.5 * abufferFootprint(M(view), ABUFFER_SHAPE, march.view, z) + pad;
-    return M(visit)(ray, Hit(t, error, march.view, uvec2(node, 0u)));
-}
-
-// Hands on all fragments of the ray's pixel whose depths it has there.
-bool M(handAll)(inout Ray ray, ABufferMarch march) {
-    float pad;
-    vec2 depths = M(depthsAhead)(march, pad);
-    int pixel = ABUFFER_PIXEL(march.view, march.pixel);
-#if defined(SINGLE_LAYER)
-    uint nearest = M(nearestOf)(pixel);
-    float depth = nearest != 0u ? M(depthOf)(nearest) : 3.0e38;
-    return nearest != 0u && depth >= depths.x && depth < depths.y && M(hand)(ray, march, nearest, depth, pad);
-#elif defined(SB)
-    uint first = imageLoad(M(pixels), pixel * PIXEL_WORDS).r;
-    uint end = first + imageLoad(M(pixels), pixel * PIXEL_WORDS + 1).r;
-    for (uint node = first; node < end; ++node) {
-        ITERATION;
-        ++M(spent);
-        float z = M(depthOf)(node);
-        if (z >= depths.y) break;
-        if (z >= depths.x && M(hand)(ray, march, node, z, pad)) return true;
-    }
-#else
-    for (int bucket = 0; bucket < BUCKETS; ++bucket) {
-        ITERATION;
-        ++M(spent);
-        for (uint node = M(headOf)(pixel, bucket); node != 0u; node = M(nextOf)(node)) {
-            ITERATION;
-            ++M(spent);
-            float z = M(depthOf)(node);
-            if (z >= depths.y) break;
-            if (z >= depths.x && M(hand)(ray, march, node, z, pad)) return true;
-        }
-    }
-#endif
-    return false;
-}
 
 void M(all)(Ray ray) {
     ABufferMarch march = M(begin)(ray);

@@ -53,6 +53,10 @@ void main() {
     if (int(gl_GlobalInvocationID.x) >= ROW || index >= abufferBlocks(shape, MAIN_SIZE, LEVEL)) return;
 #if LEVEL == 0
     vec2 bounds = boundsOf(index);
+#if defined(PLANES) && !defined(PRIMITIVES)
+    if (bounds.x <= bounds.y)
+        bounds = abufferWiden(bounds, uintBitsToFloat(imageLoad(pixels, index * PIXEL_WORDS + SPREAD_WORD).r));
+#endif
     int at = index;
 #else
     int first = 0;

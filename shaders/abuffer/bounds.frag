@@ -6,7 +6,7 @@ out vec4 OUTPUT;
 
 void main() {
     float depth;
-    if (!abufferFragment(fragmentTriangle(), depth)) discard;
+    if (!abufferFragment(depth)) discard;
 #ifdef COUNT
     OUTPUT = vec4(1.0);
 #else

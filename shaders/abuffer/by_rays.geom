@@ -7,11 +7,20 @@ layout(triangle_strip, max_vertices = 4) out;
 
 layout(std140) uniform VIEW_BLOCK { ViewData frameView; };
 
+#ifdef BY_NUMBER
+flat in uint corner_triangle[];
+flat out uint seen_triangle;
+#endif
+
 // No device has fewer bits below the pixel than four; in parts of half the image.
 vec2 roomOnScreen() { return 2.0 / (16.0 * vec2(frameView.size)); }
 
 void emit(vec3 place) {
+#ifdef BY_NUMBER
+    seen_triangle = corner_triangle[0];
+#else
     gl_PrimitiveID = gl_PrimitiveIDIn;
+#endif
     // In the middle of the depths: the ray's interval tells what is before the near plane and behind the far one, and
     // what is behind the eye is clipped.
     gl_Position = vec4(place.xy, 0.5 * place.z, place.z);

@@ -4,16 +4,24 @@
 #include "lib/fragment.glsl"
 #include "abuffer/seen.glsl"
 
+#ifdef BY_NUMBER
+flat in uint seen_triangle;
+uint abufferTriangle() { return seen_triangle; }
+#else
+uint abufferTriangle() { return fragmentTriangle(); }
+#endif
+
 #if defined(BY_RAYS) && !defined(CUBE)
 #include "lib/view.glsl"
 #include "shared/triangle.h"
 
 layout(std140) uniform VIEW_BLOCK { ViewData frameView; };
 
-bool abufferFragment(uint triangle, out float depth) {
+bool abufferFragment(out float depth) {
     vec3 origin, direction;
     float tNear, tFar;
     cameraRay(frameView, floor(gl_FragCoord.xy) + 0.5, origin, direction, tNear, tFar);
+    uint triangle = abufferTriangle();
     uvec4 corners = sceneTriangle(triangle);
     TriangleHit hit;
     bool met = intersectTriangle(triangleRay(origin, direction), tNear, tFar, scenePosition(corners.x), scenePosition(corners.y),
@@ -24,10 +32,10 @@ bool abufferFragment(uint triangle, out float depth) {
 #else
 in SEEN seen;
 
-bool abufferFragment(uint triangle, out float depth) {
+bool abufferFragment(out float depth) {
     depth = seen.depth;
 #ifdef MATERIAL_MASKED
-    return materialCovers(sceneTriangle(triangle).w, seen.texCoord, seen.texCoord1, seen.alpha);
+    return materialCovers(sceneTriangle(abufferTriangle()).w, seen.texCoord, seen.texCoord1, seen.alpha);
 #else
     return true;
 #endif

@@ -37,15 +37,6 @@ ABufferMarch M(begin)(vec3 origin, Ray ray) {
     return abufferMarch(M(view), ABUFFER_SHAPE, view, fromEye, ray.direction, ray.tMin, ray.tMax);
 }
 
-const ABufferSteps M(steps) = ABufferSteps(LEVELS, SAMPLES);
-
-void M(countRay)(bool exhausted) {
-#ifdef COUNT_EXHAUSTED
-    atomicAdd(M(exhausted)[0], 1u);
-    if (exhausted) atomicAdd(M(exhausted)[1], 1u);
-#endif
-}
-
 // The depths that the ray has ahead, either end off by what a place along it may be rounded by.
 vec2 M(depthsAhead)(ABufferMarch march) {
     float doubt = 2e-6 * (abs(march.ray.at.w) + min(max(abs(march.from), abs(march.to)), 1.0e30));
@@ -56,35 +47,10 @@ vec2 M(boundsOf)(int pixel) {
     return uintBitsToFloat(uvec2(imageLoad(M(cells), pixel * PRIMITIVE_WORDS).r, imageLoad(M(cells), pixel * PRIMITIVE_WORDS + 1).r));
 }
 
-// To the next pixel that has records where the ray is; false if the view is left before. A loop of its own, and nothing
-// but the bounds in it: on a driver that runs both sides of every branch a loop is all that can be left early.
-bool M(goesOn)(inout ABufferMarch march) {
-    while (march.inside) {
-        ITERATION;
-        ++M(spent);
-        abufferAhead(march, M(steps));
 #ifdef SKIPPING
-        vec2 depths = M(depthsAhead)(march);
-#if LEVELS > 1
-        int block = 2 * abufferBlock(march, ABUFFER_SHAPE, MAIN_SIZE);
-        vec2 bounds = uintBitsToFloat(uvec2(imageLoad(M(block_bounds), block).r, imageLoad(M(block_bounds), block + 1).r));
-#else
-        vec2 bounds = M(boundsOf)(ABUFFER_PIXEL(march.view, march.pixel));
+#define LOOKS_AHEAD
 #endif
-        bool skips = bounds.y < depths.x || bounds.x > depths.y;
-        if (!skips && march.level == 0) break;
-        if (M(spent) > uint(BUDGET)) break;
-        if (skips) {
-            abufferCross(march, M(steps));
-        } else {
-            --march.level;
-        }
-#else
-        break;
-#endif
-    }
-    return march.inside;
-}
+#include <part:abuffer/ahead.glsl>
 
 // The buckets of the ray's pixel that it may meet something in: first and last.
 ivec2 M(bucketsAhead)(int pixel, vec2 depths) {

@@ -58,26 +58,49 @@ bool before(float z, uint triangle, float otherZ, uint otherTriangle) {
 float shortZ[SHORT];
 uint shortTriangle[SHORT];
 uint shortNode[SHORT]; // SB: the link
+#if defined(SB) && defined(PLANES)
+uint shortSlopes[SHORT];
+#endif
 int shortCount = 0;
 
-void insert(float z, uint triangle, uint node) {
+void insert(float z, uint triangle, uint node, uint slopes) {
     int at = shortCount++;
     while (at > 0 && before(z, triangle, shortZ[at - 1], shortTriangle[at - 1])) {
         ITERATION;
         shortZ[at] = shortZ[at - 1];
         shortTriangle[at] = shortTriangle[at - 1];
         shortNode[at] = shortNode[at - 1];
+#if defined(SB) && defined(PLANES)
+        shortSlopes[at] = shortSlopes[at - 1];
+#endif
         --at;
     }
     shortZ[at] = z;
     shortTriangle[at] = triangle;
     shortNode[at] = node;
+#if defined(SB) && defined(PLANES)
+    shortSlopes[at] = slopes;
+#endif
 }
+
+#ifdef PLANES
+uint slopesOf(uint node) { return imageLoad(nodes, NODE_AT(node, PLANE_WORD)).r; }
+#else
+uint slopesOf(uint node) { return 0u; }
+#endif
 
 #ifdef SB
 
 uint firstNode;
 int nodeCount;
+
+void setNode(uint node, float z, uint link, uint slopes) {
+    imageStore(nodes, NODE_AT(node, 0), uvec4(floatBitsToUint(z)));
+    imageStore(nodes, NODE_AT(node, 1), uvec4(link));
+#ifdef PLANES
+    imageStore(nodes, NODE_AT(node, PLANE_WORD), uvec4(slopes));
+#endif
+}
 
 // One gap of Shell's method: the nodes that lie `gap` apart are in order then.
 void sortGap(int gap) {
@@ -87,6 +110,7 @@ void sortGap(int gap) {
         float z = depthOf(moved);
         uint triangle = triangleOf(moved);
         uint link = imageLoad(nodes, NODE_AT(moved, 1)).r;
+        uint slopes = slopesOf(moved);
         int at = i;
         while (at >= gap) {
             ITERATION;
@@ -95,11 +119,10 @@ void sortGap(int gap) {
             if (!before(z, triangle, otherZ, triangleOf(other))) break;
             uint to = firstNode + uint(at);
             imageStore(nodes, NODE_AT(to, 0), uvec4(floatBitsToUint(otherZ)));
-            imageStore(nodes, NODE_AT(to, 1), imageLoad(nodes, NODE_AT(other, 1)));
+            setNode(to, otherZ, imageLoad(nodes, NODE_AT(other, 1)).r, slopesOf(other));
             at -= gap;
         }
-        imageStore(nodes, NODE_AT(firstNode + uint(at), 0), uvec4(floatBitsToUint(z)));
-        imageStore(nodes, NODE_AT(firstNode + uint(at), 1), uvec4(link));
+        setNode(firstNode + uint(at), z, link, slopes);
     }
 }
 
@@ -108,8 +131,16 @@ void main() {
     if (pixel >= ITEMS) return;
     firstNode = imageLoad(segments, 2 * pixel).r;
     nodeCount = int(imageLoad(segments, 2 * pixel + 1).r - firstNode);
-    imageStore(pixels, 2 * pixel, uvec4(firstNode));
-    imageStore(pixels, 2 * pixel + 1, uvec4(nodeCount));
+#ifdef PLANES
+    float spread = 0.0;
+    for (int i = 0; i < nodeCount; ++i) {
+        ITERATION;
+        spread = max(spread, abufferSpread(slopesOf(firstNode + uint(i))));
+    }
+    imageStore(pixels, pixel * PIXEL_WORDS + SPREAD_WORD, uvec4(floatBitsToUint(spread)));
+#endif
+    imageStore(pixels, pixel * PIXEL_WORDS, uvec4(firstNode));
+    imageStore(pixels, pixel * PIXEL_WORDS + 1, uvec4(nodeCount));
     if (nodeCount > LONGEST) {
         atomicMax(longest, uint(nodeCount));
         nodeCount = 0;
@@ -118,12 +149,15 @@ void main() {
         for (int i = 0; i < nodeCount; ++i) {
             ITERATION;
             uint node = firstNode + uint(i);
-            insert(depthOf(node), triangleOf(node), imageLoad(nodes, NODE_AT(node, 1)).r);
+            insert(depthOf(node), triangleOf(node), imageLoad(nodes, NODE_AT(node, 1)).r, slopesOf(node));
         }
         for (int i = 0; i < nodeCount; ++i) {
             ITERATION;
-            imageStore(nodes, NODE_AT(firstNode + uint(i), 0), uvec4(floatBitsToUint(shortZ[i])));
-            imageStore(nodes, NODE_AT(firstNode + uint(i), 1), uvec4(shortNode[i]));
+#ifdef PLANES
+            setNode(firstNode + uint(i), shortZ[i], shortNode[i], shortSlopes[i]);
+#else
+            setNode(firstNode + uint(i), shortZ[i], shortNode[i], 0u);
+#endif
         }
         nodeCount = 0;
     }
@@ -205,6 +239,7 @@ uint lastBucket = 0u;
 uint ownBucket = 0u; // with ITEM_IS_BUCKET
 uint emitted = 0u;
 uint itemCount = 0u; // with SHIFTED
+float spread = 0.0; // with PLANES
 
 // The bucket whose head holds the list that is not sorted yet.
 uint headBucket() { return ownBucket; }
@@ -229,6 +264,9 @@ void setRange(float least, float most) {
 void finish() {
     if (last == 0u) return;
     setNext(last, 0u);
+#ifdef PLANES
+    imageAtomicMax(pixels, words + SPREAD_WORD, floatBitsToUint(spread));
+#endif
 #ifdef TWO_WAYS
     imageStore(pixels, words + TAIL_WORD(lastBucket), uvec4(last));
 #endif
@@ -244,6 +282,7 @@ void emit(uint node, float z) {
 #else
     uint bucket = abufferBucket(z, range.x, range.y, uint(BUCKETS));
 #endif
+    spread = max(spread, abufferSpread(slopesOf(node)));
     uint previous = last;
     if (last == 0u || bucket != lastBucket) {
         finish();
@@ -309,7 +348,7 @@ void main() {
     list = imageLoad(pixels, words + HEAD_WORD(headBucket())).r;
     for (uint node = list; node != 0u && count <= LONGEST; node = nextOf(node)) {
         ITERATION;
-        if (count < SHORT) insert(depthOf(node), triangleOf(node), node);
+        if (count < SHORT) insert(depthOf(node), triangleOf(node), node, 0u);
         ++count;
     }
 #else
@@ -320,7 +359,7 @@ void main() {
         ITERATION;
         uint node = first + uint(i);
         if (fits) {
-            insert(depthOf(node), triangleOf(node), node);
+            insert(depthOf(node), triangleOf(node), node, 0u);
         } else {
             setNext(node, i + 1 < count ? node + 1u : 0u);
         }

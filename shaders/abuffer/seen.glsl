@@ -14,3 +14,11 @@
 #define SEEN_BY VIEW
 #endif
 #define SEEN Seen { float depth; SEEN_MATERIAL SEEN_VIEW }
+
+// BY_NUMBER, beside it: the triangle's number, `flat in uint seen_triangle`, which stages before a geometry stage give on by another
+// name, and with PLANES between which depths it lies, `flat in vec2 seen_range`.
+#if defined(GEOMETRY_SHADER) || (defined(BY_RAYS) && !defined(CUBE))
+#define TRIANGLE_HERE corner_triangle
+#else
+#define TRIANGLE_HERE seen_triangle
+#endif

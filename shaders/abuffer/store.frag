@@ -12,6 +12,12 @@
 #ifdef CUBE
 uniform uint face;
 #endif
+#ifdef PLANES
+#include "shared/view.h"
+
+layout(std140) uniform VIEW_BLOCK { ViewData frameView; };
+flat in vec2 seen_range;
+#endif
 uniform uint capacity;
 layout(r32ui) uniform writeonly uimageBuffer nodes;
 #ifdef KEEPS_DATA
@@ -31,9 +37,16 @@ layout(r32ui) uniform uimageBuffer segments;
 #endif
 
 void main() {
-    uint triangle = fragmentTriangle();
     float depth;
-    if (!abufferFragment(triangle, depth)) discard;
+    bool there = abufferFragment(depth);
+#ifdef PLANES
+    // On a plane the inverse of depth is affine on the screen, of parallel rays depth itself.
+    bool parallel = SEEN_BY == 0u && frameView.position.w != 0.0;
+    float height = parallel ? depth : 1.0 / depth;
+    vec2 heights = parallel ? seen_range : (seen_range.x > 0.0 ? 1.0 / seen_range.yx : vec2(0.0, 3.0e38));
+    uint plane = abufferPlane(vec2(dFdx(height), dFdy(height)) / height, heights / height - 1.0);
+#endif
+    if (!there) discard;
     ivec2 at = ivec2(gl_FragCoord.xy);
     int pixel = ABUFFER_PIXEL(SEEN_BY, at);
     uint next = 0u;
@@ -67,18 +80,21 @@ void main() {
     if (node > capacity) discard;
 #endif
     imageStore(nodes, NODE_AT(node, 0), uvec4(floatBitsToUint(depth)));
+#ifdef PLANES
+    imageStore(nodes, NODE_AT(node, PLANE_WORD), uvec4(plane));
+#endif
 #ifdef SB
 #ifdef DECOUPLED
     imageStore(nodes, NODE_AT(node, 1), uvec4(node));
 #else
-    imageStore(nodes, NODE_AT(node, 1), uvec4(triangle));
+    imageStore(nodes, NODE_AT(node, 1), uvec4(seen_triangle));
 #endif
 #elif defined(COUNTER)
     imageStore(nodes, NODE_AT(node, 1), uvec4(next));
 #endif
 #ifdef KEEPS_DATA
-    imageStore(data, int(node) - 1, uvec4(triangle));
+    imageStore(data, int(node) - 1, uvec4(seen_triangle));
 #elif !defined(SB) && !defined(DECOUPLED)
-    imageStore(nodes, NODE_AT(node, NODE_WORDS - 1), uvec4(triangle));
+    imageStore(nodes, NODE_AT(node, NODE_WORDS - 1), uvec4(seen_triangle));
 #endif
 }

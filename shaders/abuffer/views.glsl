@@ -16,3 +16,12 @@ vec4 seenFrom(uint view, vec3 position, out float depth) {
     // Reversed depth without a far plane: the near plane is where seen.z is 0.
     return vec4(seen.xy, NEAR_PLANE, depth);
 }
+
+// Least and largest depth of a triangle.
+vec2 depthsOf(uint view, vec3 p0, vec3 p1, vec3 p2) {
+    vec3 depths;
+    seenFrom(view, p0, depths.x);
+    seenFrom(view, p1, depths.y);
+    seenFrom(view, p2, depths.z);
+    return vec2(min(depths.x, min(depths.y, depths.z)), max(depths.x, max(depths.y, depths.z)));
+}

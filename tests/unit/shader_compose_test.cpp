@@ -154,6 +154,43 @@ TEST(Compose, EndsAModulesOwnMacrosWithIt) {
                     "\n"); // the instance a is there already
 }
 
+TEST(Compose, AModulesPartIsAsIfItStoodThere) {
+    ShaderLibrary library;
+    library.addVirtual("x.comp", "#include <port:a>\n#include <port:b>\nvoid main() {}\n");
+    library.addVirtual(
+        "m.glsl",
+        "#define OWN 1\n#include <part:p.glsl>\n#include <part:p.glsl>\nint M(f)() { return BOTH; }\n");
+    library.addVirtual("p.glsl", "#ifdef OWN\n#define BOTH (OWN + STEPS)\nint M(p);\n#endif\n");
+    const ComposedProgram program = compose(
+        {{"x.comp"}, {}, {{"a", {"m.glsl", {{"STEPS", "8"}}, {}}}, {"b", {"m.glsl", {{"STEPS", "9"}}, {}}}}},
+        library);
+    const std::string& text = program.stages.at(0).text;
+    const std::string once = "#define OWN 1\n"
+                             "#line 1 3\n"
+                             "#ifdef OWN\n#define BOTH (OWN + STEPS)\nint M(p);\n#endif\n"
+                             "#line 3 2\n"
+                             "\n"
+                             "int M(f)() { return BOTH; }\n"
+                             "#undef BOTH\n#undef OWN\n";
+    const size_t first = text.find(once);
+    ASSERT_NE(first, std::string::npos) << text;
+    EXPECT_NE(text.find(once, first + once.size()), std::string::npos) << text;
+    EXPECT_THAT(program.dependencies, ElementsAre("m.glsl", "p.glsl", "x.comp"));
+}
+
+TEST(Compose, OnlyModulesHaveParts) {
+    EXPECT_THAT(problemsOf("#include <part:lib/a.glsl>\n"),
+                HasSubstr("x.comp:1: only a module has parts ('lib/a.glsl')"));
+    ShaderLibrary library;
+    library.addVirtual("x.comp", "#include <port:a>\n");
+    library.addVirtual("m.glsl",
+                       "#include <part:q.glsl>\n#ifdef GL_unknown\n#include <part:p.glsl>\n#endif\n");
+    library.addVirtual("p.glsl", "");
+    const std::string problems = problemsOf({{"x.comp"}, {}, {{"a", {"m.glsl", {}, {}}}}}, library);
+    EXPECT_THAT(problems, HasSubstr("m.glsl:1: "));
+    EXPECT_THAT(problems, HasSubstr("m.glsl:3: the part 'p.glsl' is included where"));
+}
+
 TEST(Compose, BlanksWhatIsForCpp) {
     ShaderLibrary library;
     library.addVirtual("shared/b.h", "#pragma once\n"
@@ -255,8 +292,8 @@ TEST(Compose, NamesMissingFilesAndPorts) {
         "x.comp:4: the module at port 'lost': no shader file 'no.glsl'; searched no folder");
     EXPECT_EQ(problemsOf({{"none.comp"}, {}, {}}, library), "no shader file 'none.comp'; searched no folder");
     EXPECT_EQ(problemsOf("#include <cstdint>\n"),
-              "x.comp:1: cannot read '#include <cstdint>': write #include \"folder/file.glsl\" or "
-              "#include <port:NAME>");
+              "x.comp:1: cannot read '#include <cstdint>': write #include \"folder/file.glsl\", "
+              "#include <port:NAME> or, in a module, #include <part:folder/file.glsl>");
 }
 
 TEST(Compose, RefusesLibrariesWhereTheDefinesDoNotDecide) {
