@@ -11,6 +11,7 @@ using Structure = FragmentLists::Structure;
 struct Fragment {
     float depth = 0;
     std::uint32_t triangle = 0;
+    std::uint32_t plane = 0; // where lists keep planes
     friend bool operator==(const Fragment&, const Fragment&) = default;
 };
 using Lists = std::vector<std::vector<Fragment>>; // by pixel of all views
@@ -37,28 +38,31 @@ private:
     [[nodiscard]] bool bucketed() const {
         return lists_.structure == Structure::LLB || lists_.structure == Structure::DLLB;
     }
+    [[nodiscard]] size_t planes() const { return lists_.planes ? 1 : 0; }
     [[nodiscard]] std::uint32_t word(std::uint32_t node, size_t word) const {
-        const size_t words =
-            (linkedBack() ? 3 : 2) + (lists_.decoupled || lists_.structure == Structure::SB ? 0 : 1);
+        const size_t words = (linkedBack() ? 3 : 2) + planes() +
+                             (lists_.decoupled || lists_.structure == Structure::SB ? 0 : 1);
         return nodes_.at((node - 1) * words + word);
     }
     [[nodiscard]] Fragment fragment(std::uint32_t node) const {
-        const size_t last = linkedBack() ? 3 : 2;
+        const size_t own = linkedBack() ? 3 : 2;
         const std::uint32_t link = lists_.structure == Structure::SB ? word(node, 1) : node;
         const std::uint32_t triangle = lists_.decoupled                    ? data_.at(link - 1)
                                        : lists_.structure == Structure::SB ? link
-                                                                           : word(node, last);
-        return {std::bit_cast<float>(word(node, 0)), triangle};
+                                                                           : word(node, own + planes());
+        return {std::bit_cast<float>(word(node, 0)), triangle, lists_.planes ? word(node, own) : 0};
     }
     [[nodiscard]] std::vector<Fragment> list(size_t pixel) const {
         std::vector<Fragment> result;
         const auto buckets = static_cast<size_t>(lists_.buckets);
         if (lists_.structure == Structure::SB) {
-            for (std::uint32_t i = 0; i < pixels_.at(2 * pixel + 1); ++i)
-                result.push_back(fragment(pixels_.at(2 * pixel) + i));
+            const size_t at = pixel * (2 + planes());
+            for (std::uint32_t i = 0; i < pixels_.at(at + 1); ++i)
+                result.push_back(fragment(pixels_.at(at) + i));
             return result;
         }
-        const size_t words = bucketed() ? 2 + buckets * (linkedBack() ? 2 : 1) : (linkedBack() ? 2 : 1);
+        const size_t words =
+            (bucketed() ? 2 + buckets * (linkedBack() ? 2 : 1) : (linkedBack() ? 2 : 1)) + planes();
         const float zMin = bucketed() ? std::bit_cast<float>(pixels_.at(pixel * words)) : 0;
         std::vector<size_t> bucketOf;
         const float zMax = bucketed() ? std::bit_cast<float>(pixels_.at(pixel * words + 1)) : 0;
