@@ -15,7 +15,7 @@ temporary=$(mktemp -d)
 trap 'rm -rf "$temporary"' EXIT
 bundle=$temporary/$name
 cmake --install "$build" --prefix "$bundle" --strip >/dev/null
-rm -rf "$bundle/include" "$bundle/lib/cmake"
+rm -rf "$bundle/include" "$bundle/lib/cmake" "$bundle"/lib/python* # a Python module is for one interpreter
 
 host='^(ld-linux.*|linux-vdso|libc|libm|libdl|libpthread|librt|libmvec|libresolv|libutil|libanl|libnsl|libE?GL.*|libGLdispatch|libOpenGL|libOSMesa)\.so'
 either='^(libstdc\+\+|libgcc_s|libz|libzstd|liblzma|libexpat|libffi|libbsd|libmd|libdrm.*|libX.*|libxcb.*)\.so'

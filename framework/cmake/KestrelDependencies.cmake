@@ -114,5 +114,19 @@ if(WEBP_INCLUDE AND WEBP_LIBRARY)
 endif()
 kestrel_optional(KESTREL_HAS_WEBP webp libwebp-dev)
 
+# The Python module is for the interpreter that Debian's numpy belongs to, also where another stands first in PATH. An
+# interpreter without sanitizers can't load what has them.
+if(NOT KESTREL_CONFIG MATCHES "sanitize|fuzz")
+    if(NOT DEFINED Python_ROOT_DIR AND NOT DEFINED Python_EXECUTABLE)
+        set(Python_ROOT_DIR /usr)
+    endif()
+    find_package(Python 3.10 QUIET COMPONENTS Interpreter Development.Module)
+    if(Python_FOUND)
+        find_package(pybind11 QUIET)
+    endif()
+    set(KESTREL_HAS_PYTHON ${pybind11_FOUND})
+    kestrel_optional(KESTREL_HAS_PYTHON python "pybind11-dev or python3-dev")
+endif()
+
 # The GL loader is generated from the packaged registry; no loader is kept in the tree.
 find_program(GLAD glad REQUIRED)

@@ -20,16 +20,17 @@ def test_every_row_has_a_package_and_a_known_need():
 
 def test_cmake_names_only_packages_that_are_stated():
     text = (SOURCE / "framework" / "cmake" / "KestrelDependencies.cmake").read_text()
-    named = set(re.findall(r"\b(?:lib[a-z0-9]+-dev|glslang-dev)\b", text))
+    named = set(re.findall(r"\b(?:lib[a-z0-9]+|glslang|pybind11|python3)-dev\b", text))
     assert len(named) > 6
     assert named <= set(stated()), named - set(stated())
 
 
 def test_what_may_be_absent_is_optional():
     text = (SOURCE / "framework" / "cmake" / "KestrelDependencies.cmake").read_text()
-    optional = set(re.findall(r"kestrel_optional\([^)]*?(lib\S+-dev)\)", text))
-    # Fonts are looked for when the program runs.
-    packages = {name for name, need in stated().items() if need == "optional" and not name.startswith("fonts-")}
+    optional = {name for call in re.findall(r"kestrel_optional\(([^)]*)\)", text) for name in re.findall(r"[\w.]+-dev", call)}
+    # Fonts, and what Python imports, are looked for when the program runs.
+    packages = {name for name, need in stated().items()
+                if need == "optional" and (name.endswith("-dev") or not name.startswith(("fonts-", "python3-")))}
     assert optional == packages
 
 
