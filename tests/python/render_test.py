@@ -1,6 +1,8 @@
 """Rendering from Python: the command line's pictures, errors, metrics, progress, the interpreter's lock."""
 import json
 import os
+import resource
+import signal
 import subprocess
 import sys
 import threading
@@ -188,6 +190,32 @@ def test_progress_is_told_and_may_raise():
 
     kestrel.Renderer("reference_ao.json", SCENE, size=SIZE, progress=nested).frame()
     assert again and all("progress function" in text for text in again)
+
+
+def test_an_interrupt_waits_for_the_frame_and_nothing_is_lost():
+    numpy = need_numpy()
+    ours = renderer()
+    expected = ours.render(frames=3)["mean.result"]
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    refused(lambda: ours.render(frames=1_000_000), KeyboardInterrupt)
+    ours.restart()
+    assert numpy.array_equal(ours.render(frames=3)["mean.result"], expected)
+
+
+def test_renderers_give_their_memory_back():
+    need_numpy()
+
+    def peak_after(many):
+        """Bytes that the process held at most so far, and what one renderer's plan asks for."""
+        for _ in range(many):
+            ours = kestrel.Renderer("ray_ao.json", SCENE, size=(512, 512))
+            ours.frame()
+        memory = ours.plan["memory"]
+        return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, memory["transient"] + memory["persistent"]
+
+    first, one = peak_after(3)
+    last, _ = peak_after(12)
+    assert one > 10_000_000 and last - first < 4 * one, (first, last, one)
 
 
 def test_a_process_ends_well_whatever_it_holds():

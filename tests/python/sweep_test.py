@@ -2,12 +2,14 @@
 import csv
 import json
 import os
+import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import kestrel
-from kestrel_cli import SOURCE, Skipped, done, folder, need, run_tests
+from kestrel_cli import KESTREL, SOURCE, Skipped, done, folder, need, run_tests
 from python_support import need_numpy, refused
 
 TINY = {"kestrel_sweep": 1, "title": "Tiny", "size": [32, 18], "frames": 1, "repeats": 2, "scenes": ["builtin:blob?detail=0.05"],
@@ -41,7 +43,8 @@ def test_rows_are_those_of_the_table_with_numbers_as_numbers():
         assert [row["axis bom.resolution"] for row in rows] == [32, 64, None] and rows[0]["psnr"] > 0
         assert told == sorted(told) and told[0] == 0 and told[-1] <= 1 and len(told) > 5
         assert kestrel.read_rows(f"{here}/out") == rows == kestrel.read_rows(f"{here}/out/results.csv")
-        assert done("sweep", f"{here}/tiny.json", "--out", f"{here}/out", "--resume", "--json").json()["rows"][0]["flip"] == rows[0]["flip"]
+        again = done("sweep", f"{here}/tiny.json", "--out", f"{here}/out", "--resume", "--json").json()
+        assert again["rows"][0]["flip"] == rows[0]["flip"]
         assert "resume" in str(refused(lambda: kestrel.sweep(f"{here}/tiny.json", f"{here}/out")))
 
 
@@ -61,12 +64,38 @@ def test_a_sweep_is_stopped_and_goes_on():
         assert [row["variant"] for row in only if row["repeat_count"]] == ["BVH"]
 
 
+def test_an_interrupt_ends_a_sweep_between_two_measurements():
+    with folder() as here:
+        file = written(here)
+        file.write_text(json.dumps({**TINY, "repeats": 10_000}))
+        timer = threading.Timer(1, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        refused(lambda: kestrel.sweep(file, f"{here}/out"), KeyboardInterrupt)
+        file.write_text(json.dumps(TINY))
+        assert len(kestrel.sweep(file, f"{here}/other")) == 3
+
+
 def test_mistakes_of_a_sweep_come_at_once():
     with folder() as here:
         file = written(here)
         file.write_text(json.dumps({**TINY, "framse": 3, "repeats": 0}))
         told = refused(lambda: kestrel.sweep(file))
         assert len(told.problems) == 2 and all(problem.file.endswith("tiny.json") and problem.line for problem in told.problems)
+
+
+def test_an_installed_package_is_found_and_finds_the_rest():
+    need_numpy()
+    build = Path(KESTREL).parent.parent
+    with folder() as here:
+        for part in ["framework", "passes", "apps/python"]:
+            subprocess.run(["cmake", f"-DCMAKE_INSTALL_PREFIX={here}", "-P", build / part / "cmake_install.cmake"], check=True,
+                           capture_output=True, timeout=60)
+        place, = Path(here).glob("lib/python*/dist-packages")
+        script = "import kestrel; print(kestrel.__file__); print(kestrel.render('ray_ao.json', size=(64, 36))['mean.result'].shape)"
+        run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, cwd=here,
+                             env={**os.environ, "PYTHONPATH": str(place)})
+        assert (run.stdout, run.stderr) == (f"{place}/kestrel/__init__.py\n(36, 64)\n", "")
+        assert (place / "kestrel" / "passes.pyi").exists()
 
 
 def need_matplotlib():

@@ -26,7 +26,7 @@ class Renderer:
 
     graph       a Graph, or what `kestrel.load` takes. A Graph stays in use: what is changed in it acts with the next frame,
                 and what a change makes wrong is raised there, with the renderer as it was
-    scene       "builtin:NAME" or a glTF file; default: the graph's
+    scene       "builtin:NAME" or a glTF file; default: the graph's. It stays that of the beginning, with its camera and lights
     camera      the name or number of a camera of the scene, or one of one's own:
                 {"eye": [4, 3, 6], "target": [0, 1, 0], "fov": 50}, or the same as `--camera` takes it
     lights      further ones, as `--light` takes them, or as mappings
