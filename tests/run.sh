@@ -4,6 +4,7 @@
 #
 # tests/run.sh --stage NAME [CTEST ARGUMENT]... runs one of the further stages instead:
 #   slow       the tests that take long: every combination of what a pass can be, whole lists against Embree
+#   long       days in the window: by hand
 #   format     every C++ file stands as .clang-format has it
 #   sanitize   the tests that need no GL, under the address and undefined-behaviour sanitizers
 #   fuzz       what reads files, by libFuzzer under both sanitizers: --stage fuzz [SECONDS [TARGET]...], 10 s a target
@@ -29,7 +30,9 @@ fi
 slow='ABuffer(Lists|Rays|Hits|Primitives|Construction|Limits|Layers)\.|ShippedErrors\.NoGraph'
 slow+='|ShippedShaders\.CompileUnderEvery|stress_test\.test_what_is_killed|that_is_killed|Composite\.(Panes|TheHouse|What|More|Surfaces)'
 slow+='|Hold/path_trace|LeavingOutTest\.ChangesNoImage/(path_trace|full|transparency|rsm_gather)|Horizons\.WithLayersTheTower'
-slow+='|DistanceFields\.EveryVariant|ShippedMemory|Editor(Monkey|Endurance)\.TenThousand'
+slow+='|DistanceFields\.EveryVariant|ShippedMemory'
+# Half an hour: ten thousand actions in the window, undone to the byte; ten thousand edits, and what they leave in memory.
+long='Editor(Monkey|Endurance)\.TenThousand'
 sources() { git -C "$root" ls-files '*.cpp' '*.h' | grep -v '^shaders/'; }
 
 # build FOLDER CMAKE_ARGUMENT... [-- TARGET...]: the build of a stage beside the usual one.
@@ -54,7 +57,7 @@ run() {
 }
 
 case "$stage" in
-tests | slow)
+tests | slow | long)
     export KESTREL_BUILD=${KESTREL_BUILD:-$root/build}
     "$root/apps/build.sh" test
     if [ -n "$driver" ]; then
@@ -67,13 +70,13 @@ tests | slow)
         echo "On $renderer"
         mkdir -p "$MESA_SHADER_CACHE_DIR"
         # OSMesa draws by itself, whatever the driver, and crashes in Mesa 25 with zink, which also keeps more memory.
-        run "$KESTREL_BUILD" -L '^(gl|stability)$' -E "[Oo]s[Mm]esa|ADaysEditsLeaveMemoryFlat|$slow" "$@"
-    elif [ "$stage" = slow ]; then
-        run "$KESTREL_BUILD" -R "$slow" "$@"
+        run "$KESTREL_BUILD" -L '^(gl|stability)$' -E "[Oo]s[Mm]esa|ADaysEditsLeaveMemoryFlat|$slow|$long" "$@"
+    elif [ "$stage" != tests ]; then
+        run "$KESTREL_BUILD" -R "${!stage}" "$@"
     elif [ $# -gt 0 ]; then
         run "$KESTREL_BUILD" "$@"
     else
-        run "$KESTREL_BUILD" -E "$slow"
+        run "$KESTREL_BUILD" -E "$slow|$long"
     fi
     ;;
 format)
@@ -117,13 +120,13 @@ tidy)
     ;;
 all)
     "$0"
-    for each in slow format tidy strict sanitize fuzz; do
+    for each in slow long format tidy strict sanitize fuzz; do
         echo "== $each"
         "$0" --stage "$each"
     done
     ;;
 *)
-    echo "tests/run.sh: there is no stage '$stage': slow, format, tidy, strict, sanitize, fuzz, all" >&2
+    echo "tests/run.sh: there is no stage '$stage': slow, long, format, tidy, strict, sanitize, fuzz, all" >&2
     exit 2
     ;;
 esac

@@ -50,13 +50,15 @@ TEST_F(ShippedFacts, AreThoseOfTheReadme) {
 
 TEST_F(ShippedFacts, EveryPassStandsInAGraph) {
     if (!whole()) GTEST_SKIP() << "this build lacks passes";
-    for (const PassType& type : registry().types())
+    for (const PassType& type : registry().types()) {
+        if (type.name == "Image") continue; // shows a picture of the user's own, and nothing of a scene
         EXPECT_TRUE(std::ranges::any_of(graphs(),
                                         [&](const Graph& graph) {
                                             return std::ranges::find(graph.passes, type.name,
                                                                      &GraphPass::type) != graph.passes.end();
                                         }))
             << type.name << " stands in no graph that comes with Kestrel, so its facts are not asked for";
+    }
 }
 
 // Words that nothing bears out would be a table that lies.
