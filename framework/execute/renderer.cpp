@@ -9,13 +9,16 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
+#include <utility>
 
 namespace kestrel {
 
 namespace {
 
-// A pass may find only after growing once that it needs more still; more often than that, it never ends.
-constexpr int maxRecompilations = 8;
+// A pass may find only after growing once that it needs more still; a port that grows more often than that in
+// one frame never ends.
+constexpr int maxGrowths = 8;
 
 using Clock = std::chrono::steady_clock;
 
@@ -252,20 +255,19 @@ FrameInfo Renderer::frameInfo() const {
 // Until no pass overflows; returns how often the plan was compiled anew.
 int Renderer::runFrame(const FrameScene& frame, Causes events) {
     int recompiled = 0;
+    std::map<std::pair<std::string, std::string>, int> growths; // by pass and port
     try {
         while (!executor_->run(frame, events)) {
             const std::map<std::string, Growth> needed = executor_->report().overflows;
-            if (++recompiled > maxRecompilations) {
-                const auto& [pass, ports] = *needed.begin();
-                const auto& [port, elements] = *ports.begin();
-                throw MachineError(
-                    fmt::format("{}.{} overflows after growing {} times; it now asks for {} elements", pass,
-                                port, maxRecompilations, elements));
-            }
+            ++recompiled;
             // At once as many as were wanted; where that was not enough, by half at least, so that what grows
             // a little every frame is not compiled anew every frame.
             for (const auto& [pass, ports] : needed)
                 for (const auto& [port, elements] : ports) {
+                    if (++growths[{pass, port}] > maxGrowths)
+                        throw MachineError(
+                            fmt::format("{}.{} overflows after growing {} times; it now asks for {} elements",
+                                        pass, port, maxGrowths, elements));
                     std::uint64_t& grown = grown_[pass][port];
                     grown = std::max(elements, grown + grown / 2);
                 }

@@ -56,6 +56,8 @@ const std::pair<const char*, std::vector<const char*>> stores[] = {
     {"pages", {"allocation=pages"}},
     {"counted", {"allocation=counted"}},
     {"counted_by_atomics", {"allocation=counted", "fetch=false"}},
+    {"counter_without_planes", {"allocation=counter", "planes=false"}},
+    {"counted_without_planes", {"allocation=counted", "planes=false"}},
     {"counted_whole", {"allocation=counted", "decoupled=false"}},
     {"by_geometry_shader", {"allocation=counted", "drawing=geometry_shader"}},
     {"by_vertex_layer", {"allocation=counted", "drawing=vertex_layer"}},

@@ -1,5 +1,6 @@
 // Buffers that turn out too small: the plan is compiled anew and the frame run again.
 #include "execute_fixture.h"
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace kestrel::test {
@@ -170,6 +171,19 @@ TEST_F(OverflowTest, CountersAreReadForThePass) {
     EXPECT_EQ(renderer->frame().recompiled, 1);
     EXPECT_THAT(renderer->read({"total", "result"}).values, Each(384.0f));
     EXPECT_EQ(runs_["sum"], 3);
+}
+
+// Each in its turn, or all at once: what one frame may take is told by port.
+TEST_F(OverflowTest, ManyBuffersMayGrowInOneFrame) {
+    std::vector<std::string> passes, outputs;
+    for (int i = 0; i < 12; ++i) {
+        passes.push_back(fmt::format("list{}: List = 100", i));
+        outputs.push_back(fmt::format("list{}.list", i));
+    }
+    const auto renderer = rendererOf(graphOf(passes, {}, outputs));
+    EXPECT_GT(renderer->frame().recompiled, 8);
+    for (int i = 0; i < 12; ++i)
+        EXPECT_EQ(renderer->last().values.at(fmt::format("list{}", i)).at("elements"), 100) << i;
 }
 
 TEST_F(OverflowTest, WithoutEndIsAnErrorThatNamesTheNeed) {
