@@ -3,6 +3,8 @@ import ast
 import copy
 import json
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import kestrel
@@ -34,6 +36,9 @@ def test_properties_are_attributes_with_the_tables_ranges():
     for change, said in [(lambda: setattr(graph.bom, "resolution", -1), "must be"),
                          (lambda: setattr(graph.bom, "resolution", 2.5), "must be"),
                          (lambda: setattr(graph.bom, "method", "three_axes"), "did you mean 'three_axis'?"),
+                         (lambda: setattr(graph.bom, "resolution", 10 ** 30), "out of range"),
+                         (lambda: setattr(graph.bom, "resolution", [1, "x"]), "must hold numbers, not str"),
+                         (lambda: setattr(graph.roma, "offset", float("nan")), "must be"),
                          (lambda: setattr(graph.bom, "method", None), "must be a bool, a number, a text")]:
         assert said in str(refused(change)), said
     assert "did you mean 'resolution'?" in str(refused(lambda: setattr(graph.bom, "resolutoin", 64), AttributeError))
@@ -52,6 +57,13 @@ def test_numpys_numbers_are_numbers():
     made = kestrel.Graph().add(number[0], "made")
     setattr(made, number[1], numpy.float32(0.5))
     assert getattr(made, number[1]) == 0.5
+
+
+def test_graphs_need_no_numpy():
+    script = "import sys; sys.modules['numpy'] = None; import kestrel; graph = kestrel.load('ray_ao.json'); graph.bom.resolution = 64;" \
+             "graph.add('Environment', 'sky', zenith=[1, 0.5, 0.1]); print(graph.sky.zenith); graph.validate()"
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert (run.returncode, run.stdout, run.stderr) == (0, "(1.0, 0.5, 0.1)\n", ""), run
 
 
 def test_a_graph_is_built_from_nothing():

@@ -89,6 +89,9 @@ def test_size_camera_lights_and_time():
     assert lit[name][..., :3].mean() > before[name][..., :3].mean()
     told = refused(lambda: renderer(camera={"eyes": [1, 2, 3]}, lights=["dircetional"]))
     assert len(told.problems) >= 2 and "did you mean" in str(told)
+    told = refused(lambda: kestrel.Renderer("ray_ao.json", SCENE, size="640x360", seed=-1, fps=0, time="x", previews=["ao"]))
+    assert len(told.problems) == 5, told
+    assert "0 to 1000000" in str(refused(lambda: ours.set_time(float("nan"))))
     assert "1 to 16384" in str(refused(lambda: kestrel.Renderer("ray_ao.json", SCENE, size=(0, 5))))
     assert "tower" in str(refused(lambda: kestrel.Renderer("ray_ao.json", "builtin:towr")))
 
@@ -128,6 +131,7 @@ def test_metrics_are_the_command_lines():
     assert "shape" in str(refused(lambda: kestrel.compare(a, b[0, 0])))
     assert "int64" in str(refused(lambda: kestrel.compare(a, b.astype(numpy.int64))))
     assert "finite" in str(refused(lambda: kestrel.compare(a, numpy.full(a.shape, numpy.nan))))
+    assert "at most 1000" in str(refused(lambda: kestrel.flip(a, b, pixels_per_degree=0)))
     transposed = numpy.asfortranarray(a[::-1])
     assert abs(kestrel.compare(transposed, b[::-1])["mse"] / ours["mse"] - 1) < 1e-5
     assert abs(kestrel.to_srgb(numpy.full((2, 2), 0.2140411, numpy.float32)) - 0.5).max() < 1e-4
@@ -189,6 +193,7 @@ def test_progress_is_told_and_may_raise():
         again.append(str(refused(ours.frame)))
 
     kestrel.Renderer("reference_ao.json", SCENE, size=SIZE, progress=nested).frame()
+    refused(lambda: renderer(progress=3), TypeError)
     assert again and all("progress function" in text for text in again)
 
 

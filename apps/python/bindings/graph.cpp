@@ -25,15 +25,24 @@ Value valueOf(const py::handle& object, const std::string& name) {
         std::string_view(Py_TYPE(object.ptr())->tp_name) == "numpy.bool_")
         return py::bool_(py::reinterpret_borrow<py::object>(object)).cast<bool>();
     if (py::isinstance<py::str>(object)) return object.cast<std::string>();
-    if (py::isinstance<py::sequence>(object) || py::isinstance<py::array>(object)) {
+    if (PySequence_Check(object.ptr()) != 0) {
         std::vector<double> numbers;
-        for (const py::handle item : object) numbers.push_back(item.cast<double>());
+        for (const py::handle item : object) {
+            numbers.push_back(PyFloat_AsDouble(item.ptr()));
+            if (PyErr_Occurred() == nullptr) continue;
+            PyErr_Clear();
+            throw InputError(
+                fmt::format("{}: must hold numbers, not {}", name, Py_TYPE(item.ptr())->tp_name));
+        }
         return numbers;
     }
     if (PyIndex_Check(object.ptr()) != 0) {
         const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
-        if (whole) return whole.cast<std::int64_t>();
-        throw py::error_already_set();
+        if (!whole) throw py::error_already_set();
+        int beyond = 0;
+        const long long number = PyLong_AsLongLongAndOverflow(whole.ptr(), &beyond);
+        if (beyond != 0) throw InputError(fmt::format("{}: is out of range", name));
+        return std::int64_t{number};
     }
     if (py::hasattr(object, "__float__")) return py::float_(py::reinterpret_borrow<py::object>(object));
     throw InputError(fmt::format("{}: must be a bool, a number, a text or a sequence of numbers, not {}",

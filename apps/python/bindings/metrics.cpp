@@ -1,8 +1,10 @@
 // Errors between arrays, and pictures in files.
 #include "bindings.h"
+#include "core/error.h"
 #include "image/colormap.h"
 #include "image/error_figures.h"
 #include "image/io.h"
+#include <fmt/format.h>
 #include <optional>
 #include <pybind11/stl.h>
 
@@ -16,6 +18,9 @@ struct Measured {
 
 Measured measured(const py::array& reference, const py::array& test, const std::optional<py::array>& mask,
                   bool hdr, std::optional<float> pixelsPerDegree) {
+    if (pixelsPerDegree && !(*pixelsPerDegree > 0 && *pixelsPerDegree <= 1000))
+        throw InputError(
+            fmt::format("pixels_per_degree: it must be above 0 and at most 1000, not {}", *pixelsPerDegree));
     const Image first = toImage(reference, "reference"), second = toImage(test, "test");
     std::optional<Image> counted;
     if (mask) counted = toImage(*mask, "mask");

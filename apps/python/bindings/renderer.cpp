@@ -14,6 +14,19 @@
 namespace kestrel::python {
 namespace {
 
+constexpr double maxTime = 1e6; // seconds, as for --time
+
+void requireWithin(const char* name, const std::optional<double>& value, double least, double most) {
+    if (value && !(*value >= least && *value <= most))
+        throw InputError(fmt::format("{}: it must be {} to {}, not {}", name, least, most, *value));
+}
+
+std::vector<PortRef> portsOf(const py::handle& texts) {
+    std::vector<PortRef> ports;
+    for (const std::string& text : texts.cast<std::vector<std::string>>()) ports.push_back(portOf(text));
+    return ports;
+}
+
 // What kestrel/renderer.py gives beside the document, already as texts where --camera and --light are.
 struct Settings {
     std::string scene, camera, animation;
@@ -23,27 +36,43 @@ struct Settings {
     RenderOptions options;
 };
 
+// Throws InputError with everything that is of the wrong kind or out of range.
 Settings settingsOf(const py::dict& given) {
     Settings settings;
+    std::vector<Problem> problems;
+    const auto noting = [&](const char* key, auto&& what) {
+        try {
+            what();
+        } catch (const py::cast_error&) {
+            problems.push_back(
+                {{}, fmt::format("{}: it can't be {}", key, std::string(py::repr(given[key])))});
+        } catch (const InputError& error) {
+            problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+        }
+    };
     const auto take = [&](const char* key, auto& into) {
-        into = given[key].cast<std::remove_reference_t<decltype(into)>>();
+        noting(key, [&] { into = given[key].cast<std::remove_reference_t<decltype(into)>>(); });
+    };
+    const auto takeWithin = [&](const char* key, std::optional<double>& into, double least, double most) {
+        take(key, into);
+        noting(key, [&] { requireWithin(key, into, least, most); });
     };
     take("scene", settings.scene);
     take("camera", settings.camera);
     take("animation", settings.animation);
     take("lights", settings.lights);
-    take("time", settings.time);
-    take("fps", settings.fps);
+    takeWithin("time", settings.time, 0, maxTime);
+    takeWithin("fps", settings.fps, 1e-6, 1e6);
     take("allow_outside", settings.allowOutside);
-    settings.options.size = extentOf(given["size"].cast<std::vector<int>>());
+    noting("size", [&] { settings.options.size = extentOf(given["size"].cast<std::vector<int>>()); });
     take("seed", settings.options.seed);
-    take("time_step", settings.options.timeStep);
+    takeWithin("time_step", settings.options.timeStep, 0, 1e9);
     take("timing", settings.options.timing);
     take("check_finite", settings.options.checkFinite);
     take("keep_all", settings.options.keepAll);
-    for (const std::string& port : given["previews"].cast<std::vector<std::string>>())
-        settings.options.previews.push_back(portOf(port));
+    noting("previews", [&] { settings.options.previews = portsOf(given["previews"]); });
     settings.options.finishFrames = true; // FrameRecord::ms is true
+    if (!problems.empty()) throw InputError(std::move(problems));
     return settings;
 }
 
@@ -230,15 +259,18 @@ void bindRenderer(py::module_& module) {
         .def("stats", &R::stats)
         .def("outputs", &R::outputs)
         .def("restart", [](R& self) { self.set([](Renderer& renderer) { renderer.restart(); }); })
-        .def("set_time", [](R& self, double time) { self.set([&](Renderer& r) { r.setTime(time); }); })
+        .def("set_time",
+             [](R& self, double time) {
+                 requireWithin("time", time, 0, maxTime);
+                 self.set([&](Renderer& renderer) { renderer.setTime(time); });
+             })
         .def("set_size",
              [](R& self, const std::vector<int>& size) {
                  const Extent extent = extentOf(size);
                  self.set([&](Renderer& renderer) { renderer.setSize(extent); });
              })
-        .def("set_previews", [](R& self, const std::vector<std::string>& ports) {
-            std::vector<PortRef> previews;
-            for (const std::string& port : ports) previews.push_back(portOf(port));
+        .def("set_previews", [](R& self, const py::list& ports) {
+            const std::vector<PortRef> previews = portsOf(ports);
             self.set([&](Renderer& renderer) { renderer.setPreviews(previews); });
         });
 }

@@ -1,10 +1,12 @@
 // Sweeps: measuring into a folder, as `kestrel sweep` does.
 #include "bindings.h"
+#include "core/error.h"
 #include "core/version.h"
 #include "gl/timer.h"
 #include "gpu.h"
 #include "measure/sweep_run.h"
 #include "named.h"
+#include <fmt/format.h>
 #include <optional>
 #include <pybind11/stl.h>
 
@@ -20,6 +22,8 @@ void sweepInto(const std::string& file, const std::string& out, bool resume, con
     Callback callback(std::move(progress));
     std::optional<Extent> extent;
     if (size) extent = extentOf(*size);
+    if (frames && (*frames < 1 || *frames > maxSweepFrames))
+        throw InputError(fmt::format("frames: it must be 1 to {}, not {}", maxSweepFrames, *frames));
     try {
         Gpu::get().run([&](Gpu& gpu) {
             Sweep sweep = loadSweep(file);

@@ -3,17 +3,16 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _kestrel
 from .graph import Graph, load
-from .progress import show
+from .progress import Progress, function
 
 if TYPE_CHECKING:
     import numpy
 
-Progress = Callable[[float, str], Any]
 Described = str | Mapping[str, Any]
 
 
@@ -56,7 +55,7 @@ class Renderer:
             "camera": _text(camera), "lights": [_text(light) for light in lights], "animation": animation,
             "time": time, "fps": fps, "time_step": time_step, "timing": timing, "check_finite": check_finite,
             "keep_all": keep_all, "previews": list(previews), "allow_outside": allow_outside,
-            "progress": show if progress is True else progress or None})
+            "progress": function(progress)})
         self._taken = self._state()
 
     def _state(self) -> tuple[Graph, int]:

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _kestrel
-from .progress import show
-from .renderer import Progress
+from .progress import Progress, function, show
 
 TEXTS = {"scene", "camera", "variant", "kind", "series", "plot", "machine", "failed", "command"}
 
@@ -61,7 +60,7 @@ def sweep(file: str | os.PathLike[str], out: str | os.PathLike[str] | None = Non
             return sweep(file, folder, only=only, size=size, frames=frames, shard=shard, allow_outside=allow_outside,
                          progress=progress)
     _kestrel.sweep(os.fspath(file), os.fspath(out), resume, only, None if size is None else list(size), frames, shard,
-                   allow_outside, show if progress is True else progress or None)
+                   allow_outside, function(progress))
     if progress is True:
         show(1, "")
     return read_rows(out)
