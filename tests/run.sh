@@ -8,7 +8,8 @@
 #   format     every C++ file stands as .clang-format has it
 #   sanitize   the tests that need no GL, under the address and undefined-behaviour sanitizers
 #   fuzz       what reads files, by libFuzzer under both sanitizers: --stage fuzz [SECONDS [TARGET]...], 10 s a target
-#   strict     every file by itself, without precompiled headers, also for names that hide others: it must include what it uses
+#   strict     every file by itself, without precompiled headers, also for names that hide others: it must include what it uses;
+#              in the folders that are named, or in all
 #   tidy       clang-tidy over framework/ and passes/, by .clang-tidy
 #   all        the tests and every stage
 #
@@ -108,7 +109,7 @@ fuzz)
     ;;
 strict)
     build "$root/build-strict" -DKESTREL_UNITY=OFF -DKESTREL_PCH=OFF -- kestrel_stamp kestrel_glad
-    python3 "$root/tests/strict.py" "$root/build-strict/compile_commands.json"
+    python3 "$root/tests/strict.py" "$root/build-strict/compile_commands.json" "$@"
     ;;
 tidy)
     # In the groups of a unity build: the headers, which are most of the work, are read once a group.

@@ -1,6 +1,8 @@
 """Compiles every C++ file of a compilation database by itself, without making objects, and tells those that do not hold.
 
-    tests/strict.py build-strict/compile_commands.json
+    tests/strict.py build-strict/compile_commands.json [FOLDER]...
+
+With folders, relative to the repository: only what lies in them.
 """
 import json
 import os
@@ -22,6 +24,10 @@ def checked(entry):
 def main():
     with open(sys.argv[1], encoding="utf-8") as file:
         entries = [entry for entry in json.load(file) if entry["file"].endswith(".cpp")]
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    folders = tuple(os.path.join(root, folder) + os.sep for folder in sys.argv[2:])
+    if folders:
+        entries = [entry for entry in entries if os.path.abspath(entry["file"]).startswith(folders)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         failed = 0
         for text in pool.map(checked, entries):
