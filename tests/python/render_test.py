@@ -77,6 +77,36 @@ def test_a_changed_graph_acts_with_the_next_frame():
     assert numpy.array_equal(ours.render()["mean.result"], fresh)
 
 
+def test_an_array_is_an_input_picture():
+    numpy = need_numpy()
+    random = numpy.random.default_rng(2)
+    graph = kestrel.Graph()
+    graph.scene = SCENE
+    for channels in [1, 2, 3, 4]:
+        given = random.normal(size=(7, 9, channels)).astype(numpy.float32)
+        graph.show("mine", given)
+        graph.outputs = ["mine.image"]
+        ours = kestrel.Renderer(graph, size=(9, 7)) if channels == 1 else ours
+        got = ours.render()["mine.image"].reshape(7, 9, -1)
+        assert numpy.array_equal(got[..., :channels], given), channels
+        assert channels != 3 or (got[..., 3] == 1).all()
+    before = str(graph)
+    refused(lambda: graph.show("mine", given, guard=-1))
+    refused(lambda: graph.show("other", given[0, 0]))
+    assert str(graph) == before
+    # A depth of one's own feeds what is made of depths.
+    occlusion = kestrel.load("ray_ao.json")
+    ours = kestrel.Renderer(occlusion, SCENE, size=SIZE, previews=["gbuffer.depth"])
+    expected = ours.render()["mean.result"]
+    occlusion.show("captured", ours["gbuffer.depth"])
+    occlusion.connect("captured.image", "ao.depth")
+    ours.restart()
+    assert numpy.array_equal(ours.render()["mean.result"], expected)
+    occlusion.show("captured", numpy.zeros((36, 64), numpy.float32))
+    ours.restart()
+    assert not numpy.array_equal(ours.render()["mean.result"], expected)
+
+
 def test_size_camera_lights_and_time():
     numpy = need_numpy()
     ours = renderer("direct_light.json", camera={"eye": [4, 3, 6], "target": [0, 1, 0], "fov": 50})

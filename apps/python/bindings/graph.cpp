@@ -164,6 +164,11 @@ void bindGraph(py::module_& module) {
         .def("save", [](const Document& document,
                         const std::string& file) { writeFile(file, saveGraph(document.graph)); })
         .def("copy", [](const Document& document) { return document; })
+        .def("assign",
+             [](Document& document, const Document& other) {
+                 document.graph = other.graph;
+                 ++document.revision;
+             })
         .def("validate", &requireValid)
         .def_readonly("revision", &Document::revision)
         .def_property_readonly("file", [](const Document& document) { return document.graph.file.string(); })

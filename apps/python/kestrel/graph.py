@@ -2,11 +2,25 @@
 from __future__ import annotations
 
 import difflib
+import functools
+import itertools
 import os
+import tempfile
 from collections.abc import Iterator
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from . import _kestrel
+
+if TYPE_CHECKING:
+    import numpy
+
+
+_count = itertools.count()
+
+
+@functools.cache
+def _folder() -> tempfile.TemporaryDirectory:
+    return tempfile.TemporaryDirectory(prefix="kestrel_pictures_")
 
 
 class Pass:
@@ -117,6 +131,20 @@ class Graph:
     def add(self, type: type[P] | str, name: str, **properties: Any) -> P:
         """Adds a pass: `graph.add(passes.Roma, "roma", angular=4)`."""
         self._document.add(type if isinstance(type, str) else type.__name__, name, properties)
+        return self[name]
+
+    def show(self, name: str, picture: numpy.ndarray, **properties: Any) -> Pass:
+        """Makes an array the picture of a pass of type Image, which is added where the graph has none of that name: its
+        output "image" has the array's values to the bit, of three channels with alpha 1. It is copied once, into a file
+        that lasts as long as the interpreter; a graph that is to be saved names a file of one's own."""
+        file = os.path.join(_folder().name, f"{next(_count)}.exr")
+        _kestrel.write_image(file, picture, False)
+        changed = self.copy()
+        if name not in changed:
+            changed.add("Image", name)
+        for key, value in {**properties, "file": file}.items():
+            setattr(changed[name], key, value)
+        self._document.assign(changed._document)
         return self[name]
 
     def remove(self, name: str) -> None:
