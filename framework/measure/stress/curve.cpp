@@ -75,7 +75,7 @@ const StressCurve& stressCurve(const std::string& name) {
 }
 
 std::string curveCaseName(const StressCurve& curve, CurvePicture picture, double value) {
-    const std::string begin = fmt::format("{}{}/", prefix, curve.name);
+    std::string begin = fmt::format("{}{}/", prefix, curve.name);
     switch (picture) {
     case CurvePicture::Plain:
         return begin + "plain";
