@@ -24,7 +24,7 @@ def test_two_workers_measure_what_one_does():
         assert (out / "done" / "2" / "results.json").stat() == before
         done("sweep", file, "--out", f"{here}/joined", "--merge", *sorted((out / "done").iterdir()))
         assert without_times(results(f"{here}/joined")) == without_times(results(f"{here}/whole"))
-        assert not list((out / "work").iterdir())
+        assert not list((out / "begun").iterdir())
 
 
 if __name__ == "__main__":

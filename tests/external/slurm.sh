@@ -80,7 +80,7 @@ cd "$temporary"
 quietly() { sbatch --parsable --output=/dev/null "$@"; }
 job=$(quietly --array=1-12 "$root/apps/cluster/sweep.sbatch" study.json "$out")
 # The fifth shard, once something of it is measured.
-until [ -n "$(find "$out/work/5-$(hostname)/parts" -name picture.json 2>/dev/null)" ]; do sleep 0.05; done
+until [ -n "$(find "$out/begun/5-$(hostname)/parts" -name picture.json 2>/dev/null)" ]; do sleep 0.05; done
 kill -KILL "$(pgrep -f -- "sweep study.json --shard 5/12")"
 echo "shard 5 killed"
 for _ in $(seq 600); do
