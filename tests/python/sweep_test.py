@@ -48,6 +48,23 @@ def test_rows_are_those_of_the_table_with_numbers_as_numbers():
         assert "resume" in str(refused(lambda: kestrel.sweep(f"{here}/tiny.json", f"{here}/out")))
 
 
+def test_pandas_reads_the_file_as_the_rows():
+    try:
+        import pandas
+    except ImportError:
+        raise Skipped("there is no pandas") from None
+    with folder() as here:
+        rows = pandas.DataFrame(kestrel.sweep(written(here), f"{here}/out"))
+        # pandas' own way to read a number may miss its last bit.
+        table = pandas.read_csv(f"{here}/out/results.csv", true_values=["yes"], false_values=["no"], float_precision="round_trip")
+        assert list(table.columns) == list(rows.columns) and len(table) == 3
+        assert table["machine"].str.match("[a-z]").all() and table["pareto"].dtype == bool and table["flip"].dtype == float
+        for name in table.columns:
+            read, made = table[name], rows[name].where(rows[name] != "")
+            assert read.isna().equals(made.isna()) and list(read.dropna()) == list(made.dropna()), name
+        assert table.groupby("variant")["ms total"].median().gt(0).all()
+
+
 def test_a_sweep_is_stopped_and_goes_on():
     with folder() as here:
         file = written(here)
