@@ -25,9 +25,11 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 # Of what is missing, what can be had by the lists that apt holds.
 choose() {
+    local there package
+    there=$(apt-cache show --no-all-versions "${missing[@]}" 2>/dev/null | sed -n 's/^Package: //p' || true)
     known=() left=()
     for package in "${missing[@]}"; do
-        if [ "${need_of[$package]}" = required ] || apt-cache show "$package" >/dev/null 2>&1; then
+        if [ "${need_of[$package]}" = required ] || grep -qxF "$package" <<<"$there"; then
             known+=("$package")
         else
             left+=("$package")
