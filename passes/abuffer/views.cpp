@@ -67,7 +67,11 @@ Defines abufferDefines(const FragmentLists& lists, const Extent& frame) {
     if (lists.shifted) defines.emplace("SHIFTED", "1");
     if (lists.structure == Structure::DLL || lists.structure == Structure::DLLB)
         defines.emplace("TWO_WAYS", "1");
-    if (lists.decoupled) defines.emplace("DECOUPLED", "1");
+    if (lists.decoupled)
+        defines.emplace("DECOUPLED", "1");
+    else // with SB it is the link, which planes come behind
+        defines.emplace("TRIANGLE_WORD",
+                        lists.structure == Structure::SB ? "1" : std::to_string(abufferNodeWords(lists) - 1));
     if (lists.planes)
         defines.insert({{"PLANES", "1"},
                         {"SPREAD_WORD", std::to_string(structureWords(lists))},

@@ -165,7 +165,7 @@ Surface M(surface)(Ray ray, Hit hit) {
 #elif defined(DECOUPLED)
     uint triangle = imageLoad(M(data), int(hit.id.x) - 1).r;
 #else
-    uint triangle = imageLoad(M(nodes), NODE_AT(hit.id.x, NODE_WORDS - 1)).r;
+    uint triangle = imageLoad(M(nodes), NODE_AT(hit.id.x, TRIANGLE_WORD)).r;
 #endif
     vec2 barycentrics = abufferNearest(triangle, ray.origin + hit.t * ray.direction);
     return sceneSurface(triangle, barycentrics, ray.direction);

@@ -88,7 +88,7 @@ LayerSurface M(surfaceAt)(uvec2 place) {
 #elif defined(DECOUPLED)
     uint triangle = imageLoad(M(data), int(place.x) - 1).r;
 #else
-    uint triangle = imageLoad(M(nodes), NODE_AT(place.x, NODE_WORDS - 1)).r;
+    uint triangle = imageLoad(M(nodes), NODE_AT(place.x, TRIANGLE_WORD)).r;
 #endif
     return LayerSurface(M(depthAt)(place), triangle, place);
 }

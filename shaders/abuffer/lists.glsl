@@ -26,8 +26,9 @@ uint abufferPlane(vec2 slopes, vec2 limits) {
     if (!(sum > 0.0) || sum > 3.0e38) return 0u;
     slopes /= max(sum, 1.0);
     sum = min(sum, 1.0);
-    int exponent = clamp(-int(floor(log2(max(abs(slopes.x), abs(slopes.y))))) - 1, 0, 31);
-    uvec2 parts = uvec2(ivec2(round(clamp(slopes * exp2(float(exponent)), -1.0, 1.0) * 127.0)) + 127);
+    int exponent = clamp(126 - (floatBitsToInt(max(abs(slopes.x), abs(slopes.y))) >> 23), 0, 31);
+    float scale = intBitsToFloat((127 + exponent) << 23); // 2 to the exponent
+    uvec2 parts = uvec2(ivec2(round(clamp(slopes * scale, -1.0, 1.0) * 127.0)) + 127);
     uvec2 limited = uvec2(clamp(ceil(31.0 * abs(limits) / (0.5 * sum)), 0.0, 31.0));
     return uint(exponent) | parts.x << 5u | parts.y << 13u | limited.x << 21u | limited.y << 26u;
 }
@@ -35,7 +36,7 @@ uint abufferPlane(vec2 slopes, vec2 limits) {
 ABufferPlane abufferPlane(uint word) {
     if (word == 0u) return ABufferPlane(vec2(0.0), vec2(0.0));
     vec2 parts = vec2(ivec2((uvec2(word) >> uvec2(5u, 13u)) & 255u) - 127) / 127.0;
-    vec2 slopes = parts * exp2(-float(word & 31u));
+    vec2 slopes = parts * uintBitsToFloat((127u - (word & 31u)) << 23u);
     vec2 limits = vec2((uvec2(word) >> uvec2(21u, 26u)) & 31u) / 31.0;
     return ABufferPlane(slopes, 0.5 * (abs(slopes.x) + abs(slopes.y)) * limits * vec2(-1.0, 1.0));
 }

@@ -45,7 +45,7 @@ uint triangleOf(uint node) {
     return imageLoad(data, int(node) - 1).r;
 #endif
 #else
-    return imageLoad(nodes, NODE_AT(node, NODE_WORDS - 1)).r;
+    return imageLoad(nodes, NODE_AT(node, TRIANGLE_WORD)).r;
 #endif
 }
 

@@ -95,6 +95,6 @@ void main() {
 #ifdef KEEPS_DATA
     imageStore(data, int(node) - 1, uvec4(seen_triangle));
 #elif !defined(SB) && !defined(DECOUPLED)
-    imageStore(nodes, NODE_AT(node, NODE_WORDS - 1), uvec4(seen_triangle));
+    imageStore(nodes, NODE_AT(node, TRIANGLE_WORD), uvec4(seen_triangle));
 #endif
 }

@@ -97,6 +97,25 @@ TEST_F(ABufferRays, SkippingAndStructureChangeNoHit) {
     }
 }
 
+// What is lit at a hit is the triangle's surface, wherever its number lies.
+TEST_F(ABufferRays, TheSurfaceAtAHitIsTheSameWhereverItsTriangleIsKept) {
+    const Scene scene = loadScene("builtin:pool?detail=0.3");
+    const auto lit = [&](const std::string& structure, const char* decoupled) {
+        Graph graph = shippedGraph("path_trace", {"store.structure=" + structure,
+                                                  std::string("store.decoupled=") + decoupled,
+                                                  "depth_bounds.side=32", "path.bounces=1"});
+        graph.outputs = {{{"path", "indirect"}, {}}};
+        Renderer made = renderer(graph, scene, {}, {32, 18, 1});
+        made.frame();
+        return made.read({"path", "indirect"}).values;
+    };
+    for (const char* structure : {"dllb", "ll", "sb"}) {
+        const std::vector<float> apart = lit(structure, "true");
+        EXPECT_GT(*std::max_element(apart.begin(), apart.end()), 0.1f);
+        EXPECT_EQ(lit(structure, "false"), apart) << structure;
+    }
+}
+
 // Looking at fewer pixels, views or layers finds less.
 TEST_F(ABufferRays, FewerStepsViewsAndLayersFindLess) {
     const Scene hall = loadScene("builtin:hall?detail=0.3"),
