@@ -1,5 +1,6 @@
 // Compiler stage: shader variants, and the names by which resources are bound in them.
 #include "graph/glsl_names.h"
+#include "graph/many_rays.h"
 #include "graph/network.h"
 #include <algorithm>
 #include <fmt/format.h>
@@ -63,11 +64,10 @@ void bindModules(const Network& network, int node, const std::vector<ModuleUse>&
 // but may snap only if the outermost consumer bears it.
 ModuleInstance instanceOf(const Network& network, const Provider& provider, Bits taken) {
     ModuleInstance instance{provider.module->shader, provider.module->defines, {}};
-    constexpr std::pair<Bits, const char*> defines[] = {{requests::AnyHit, "REQUESTS_ANY"},
-                                                        {requests::ClosestHit, "REQUESTS_CLOSEST"},
-                                                        {requests::Surface, "REQUESTS_SURFACE"},
-                                                        {requests::Snap, "REQUESTS_SNAP"},
-                                                        {requests::AllHits, "REQUESTS_ALL"}};
+    constexpr std::pair<Bits, const char*> defines[] = {
+        {requests::AnyHit, "REQUESTS_ANY"},      {requests::ClosestHit, "REQUESTS_CLOSEST"},
+        {requests::Surface, "REQUESTS_SURFACE"}, {requests::Snap, "REQUESTS_SNAP"},
+        {requests::AllHits, "REQUESTS_ALL"},     {requests::ManyRays, "REQUESTS_MANY"}};
     for (const auto& [bit, name] : defines)
         if ((taken & bit) != 0) instance.defines[name] = "1";
     for (const ModuleUse& use : provider.module->modules) {

@@ -46,10 +46,13 @@ public:
         : bins_(bins)
         , low_(centroids.min) {
         const glm::vec3 size = centroids.size();
-        for (int axis = 0; axis < 3; ++axis)
-            scale_[axis] = size[axis] > 0 ? static_cast<float>(bins) / size[axis] : 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float scale = static_cast<float>(bins) / size[axis];
+            scale_[axis] = size[axis] > 0 && std::isfinite(scale) ? scale : 0;
+        }
     }
-    [[nodiscard]] bool usable(int axis) const { return scale_[axis] > 0 && std::isfinite(scale_[axis]); }
+    [[nodiscard]] int bins() const { return bins_; }
+    [[nodiscard]] bool usable(int axis) const { return scale_[axis] > 0; }
     [[nodiscard]] int bin(const glm::vec3& centroid, int axis) const {
         return std::clamp(static_cast<int>((centroid[axis] - low_[axis]) * scale_[axis]), 0, bins_ - 1);
     }
@@ -67,10 +70,11 @@ public:
 
     // Builds the node over [first, last) into `part` and returns its index there. Room: inner nodes that may
     // still lie on the way down, this one included.
-    std::uint32_t buildNode(Part& part, std::size_t first, std::size_t last, int room, int threads) {
+    std::uint32_t buildNode(Part& part, std::size_t first, std::size_t last, const Box& centroids, int room,
+                            int threads) {
         const auto index = static_cast<std::uint32_t>(part.nodes.size());
         part.nodes.emplace_back();
-        const std::size_t middle = divide(first, last, room);
+        const std::size_t middle = divide(first, last, centroids, room);
         const bool parallel = threads > 1 && last - first >= parallelTriangles;
         int below = 0;
         if (parallel) {
@@ -100,8 +104,11 @@ public:
 private:
     BvhNode::Child makeChild(Part& part, std::size_t first, std::size_t last, int room, int threads) {
         BvhNode::Child child;
-        Box box;
-        for (std::size_t i = first; i < last; ++i) box.add(items_[i].box);
+        Box box, centroids;
+        for (std::size_t i = first; i < last; ++i) {
+            box.add(items_[i].box);
+            centroids.add(items_[i].centroid);
+        }
         if (first < last) {
             child.min = box.min;
             child.max = box.max;
@@ -111,7 +118,7 @@ private:
             child.reference =
                 shared::bvhLeaf(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count));
         } else {
-            child.reference = buildNode(part, first, last, room, threads);
+            child.reference = buildNode(part, first, last, centroids, room, threads);
         }
         return child;
     }
@@ -129,17 +136,18 @@ private:
     }
 
     // Reorders [first, last) into two parts and returns where the second begins.
-    std::size_t divide(std::size_t first, std::size_t last, int room) {
+    std::size_t divide(std::size_t first, std::size_t last, const Box& centroids, int room) {
         const std::size_t count = last - first;
         // The root of a scene of a few triangles: one leaf, and an absent one.
         if (count <= static_cast<std::size_t>(settings_.maxLeaf)) return last;
-        Box centroids;
-        for (std::size_t i = first; i < last; ++i) centroids.add(items_[i].centroid);
+        // What fits into one node of a wide tree needs no choice, and three quarters of all nodes lie there.
+        if (count <= 4) return halve(centroids, first, last);
         // Halving needs one level for every doubling above the leaf's size.
         const std::size_t leaves = (count - 1) / static_cast<std::size_t>(settings_.maxLeaf);
         const bool roomToChoose = static_cast<int>(std::bit_width(leaves)) < room;
         if (roomToChoose) {
-            const Binning binning(centroids, settings_.bins);
+            const Binning binning(
+                centroids, std::min(settings_.bins, static_cast<int>(std::min<std::size_t>(count, maxBins))));
             const Split split = bestSplit(binning, first, last);
             if (std::isfinite(split.cost)) {
                 const auto begin = items_.begin();
@@ -164,45 +172,56 @@ private:
         return middle;
     }
 
+    // Without initial values: most nodes are small, and would pay for all bins that there could be.
     struct Bin {
-        Box box;
-        std::uint32_t count = 0;
+        glm::vec3 min, max;
+        std::uint32_t count;
     };
+    using Bins = std::array<Bin, maxBins>;
 
     [[nodiscard]] Split bestSplit(const Binning& binning, std::size_t first, std::size_t last) const {
-        Split best;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!binning.usable(axis)) continue;
-            std::array<Bin, maxBins> bins;
-            for (std::size_t i = first; i < last; ++i) {
-                Bin& bin = bins[static_cast<std::size_t>(binning.bin(items_[i].centroid, axis))];
-                bin.box.add(items_[i].box);
+        std::array<Bins, 3> bins;
+        const Box none;
+        for (Bins& axis : bins) std::fill_n(axis.begin(), binning.bins(), Bin{none.min, none.max, 0});
+        // All axes in one pass, since items come from memory.
+        for (std::size_t i = first; i < last; ++i) {
+            const Item& item = items_[i];
+            for (int axis = 0; axis < 3; ++axis) {
+                Bin& bin = bins[static_cast<std::size_t>(axis)]
+                               [static_cast<std::size_t>(binning.bin(item.centroid, axis))];
+                bin.min = glm::min(bin.min, item.box.min);
+                bin.max = glm::max(bin.max, item.box.max);
                 ++bin.count;
             }
-            improve(best, axis, bins);
         }
+        Split best;
+        for (int axis = 0; axis < 3; ++axis)
+            if (binning.usable(axis))
+                improve(best, axis, bins[static_cast<std::size_t>(axis)], binning.bins());
         return best;
     }
 
     // Sweeps over the bins of one axis from both ends; keeps the cheapest border that has triangles on both
     // sides.
-    void improve(Split& best, int axis, const std::array<Bin, maxBins>& bins) const {
-        const auto last = static_cast<std::size_t>(settings_.bins) - 1;
-        std::array<float, maxBins> rightCost{};
-        std::array<std::uint32_t, maxBins> rightCount{};
-        Bin side;
+    static void improve(Split& best, int axis, const Bins& bins, int count) {
+        const auto last = static_cast<std::size_t>(count) - 1;
+        std::array<float, maxBins> rightCost;
+        std::array<std::uint32_t, maxBins> rightCount;
+        Box box;
+        std::uint32_t triangles = 0;
         for (std::size_t k = last; k > 0; --k) {
-            side.box.add(bins[k].box);
-            side.count += bins[k].count;
-            rightCost[k - 1] = cost(side.box, side.count);
-            rightCount[k - 1] = side.count;
+            box.add(Box{bins[k].min, bins[k].max});
+            triangles += bins[k].count;
+            rightCost[k - 1] = cost(box, triangles);
+            rightCount[k - 1] = triangles;
         }
-        side = {};
+        box = {};
+        triangles = 0;
         for (std::size_t k = 0; k < last; ++k) {
-            side.box.add(bins[k].box);
-            side.count += bins[k].count;
-            const float total = cost(side.box, side.count) + rightCost[k];
-            if (side.count > 0 && rightCount[k] > 0 && total < best.cost)
+            box.add(Box{bins[k].min, bins[k].max});
+            triangles += bins[k].count;
+            const float total = cost(box, triangles) + rightCost[k];
+            if (triangles > 0 && rightCount[k] > 0 && total < best.cost)
                 best = {axis, static_cast<int>(k), total};
         }
     }
@@ -244,8 +263,11 @@ Bvh buildBvh(const Geometry& geometry, const BvhSettings& settings) {
     std::vector<Item> items = itemsOf(geometry);
     Part part;
     part.nodes.reserve(items.size() / 2 + 1);
+    Box centroids;
+    for (const Item& item : items) centroids.add(item.centroid);
     Builder(items, settings)
-        .buildNode(part, 0, items.size(), static_cast<int>(shared::bvhStackSize), settings.threads);
+        .buildNode(part, 0, items.size(), centroids, static_cast<int>(shared::bvhStackSize),
+                   settings.threads);
     KESTREL_CHECK_LE(part.depth, static_cast<int>(shared::bvhStackSize));
 
     const std::vector<std::uint32_t> classes = classesOf(geometry);

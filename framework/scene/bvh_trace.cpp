@@ -1,6 +1,7 @@
 #include "scene/bvh_trace.h"
 #include "shared/triangle.h"
 #include <array>
+#include <bit>
 #include <utility>
 
 namespace kestrel {
@@ -47,6 +48,45 @@ void traverse(const Bvh& bvh, const TraceRay& ray, const float& tMax, Leaf&& lea
     }
 }
 
+BvhTriangle triangleOf(const WideItem& item) {
+    const auto corner = [&](std::size_t i) { return glm::uintBitsToFloat(glm::uvec3(item.texels[i])); };
+    return {corner(0), item.texels[0].w, corner(1), item.texels[1].w, corner(2), item.texels[2].w};
+}
+
+// The nearest child first, the others of a node in any order.
+template<class Leaf>
+void traverse(const WideBvh& bvh, const TraceRay& ray, const float& tMax, Leaf&& leaf) {
+    std::array<std::uint32_t, shared::wideStackSize> stack;
+    std::size_t size = 0;
+    const shared::WideRay boxes = shared::wideRay(ray.origin, shared::inverseDirection(ray.direction));
+    std::uint32_t at = 0, waiting = 0;
+    for (;;) {
+        const WideItem& item = bvh.items[at];
+        std::uint32_t met = 0;
+        glm::ivec4 entries;
+        if ((item.texels[0].w & shared::wideNode) == 0) {
+            if (leaf(triangleOf(item))) return;
+        } else {
+            met = shared::wideMet(boxes, ray.tMin, tMax, item.texels[0], item.texels[1], item.texels[2],
+                                  entries);
+        }
+        std::uint32_t next = std::countr_zero(waiting);
+        if (met != 0) {
+            if ((waiting & 15u) != 0) stack[size++] = waiting;
+            waiting = shared::wideChildren(item.texels[1].w, met);
+            for (std::uint32_t k = next = std::countr_zero(met); k < 4; ++k)
+                if ((met >> k & 1u) != 0 && entries[static_cast<int>(k)] < entries[static_cast<int>(next)])
+                    next = k;
+        } else if ((waiting & 15u) == 0) {
+            if (size == 0) return;
+            waiting = stack[--size];
+            next = std::countr_zero(waiting);
+        }
+        at = ((waiting >> 4) + shared::wideTexelOf(1u << next)) / shared::wideTexels;
+        waiting &= ~(1u << next);
+    }
+}
+
 std::optional<TraceHit> intersect(const shared::TriangleRay& ray, float tMin, float tMax,
                                   const BvhTriangle& triangle) {
     shared::TriangleHit hit{};
@@ -55,9 +95,8 @@ std::optional<TraceHit> intersect(const shared::TriangleRay& ray, float tMin, fl
     return TraceHit{hit.t, hit.u, hit.v, triangle.triangle};
 }
 
-} // namespace
-
-std::optional<TraceHit> closestHit(const Bvh& bvh, const TraceRay& ray) {
+template<class Tree>
+std::optional<TraceHit> nearest(const Tree& bvh, const TraceRay& ray) {
     const shared::TriangleRay sheared = shared::triangleRay(ray.origin, ray.direction);
     std::optional<TraceHit> best;
     float tMax = ray.tMax;
@@ -72,7 +111,8 @@ std::optional<TraceHit> closestHit(const Bvh& bvh, const TraceRay& ray) {
     return best;
 }
 
-bool anyHit(const Bvh& bvh, const TraceRay& ray) {
+template<class Tree>
+bool any(const Tree& bvh, const TraceRay& ray) {
     const shared::TriangleRay sheared = shared::triangleRay(ray.origin, ray.direction);
     bool found = false;
     traverse(bvh, ray, ray.tMax, [&](const BvhTriangle& triangle) {
@@ -82,12 +122,26 @@ bool anyHit(const Bvh& bvh, const TraceRay& ray) {
     return found;
 }
 
-void allHits(const Bvh& bvh, const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit) {
+template<class Tree>
+void all(const Tree& bvh, const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit) {
     const shared::TriangleRay sheared = shared::triangleRay(ray.origin, ray.direction);
     traverse(bvh, ray, ray.tMax, [&](const BvhTriangle& triangle) {
         const auto hit = intersect(sheared, ray.tMin, ray.tMax, triangle);
         return hit && visit(*hit);
     });
+}
+
+} // namespace
+
+std::optional<TraceHit> closestHit(const Bvh& bvh, const TraceRay& ray) { return nearest(bvh, ray); }
+bool anyHit(const Bvh& bvh, const TraceRay& ray) { return any(bvh, ray); }
+void allHits(const Bvh& bvh, const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit) {
+    all(bvh, ray, visit);
+}
+std::optional<TraceHit> closestHit(const WideBvh& bvh, const TraceRay& ray) { return nearest(bvh, ray); }
+bool anyHit(const WideBvh& bvh, const TraceRay& ray) { return any(bvh, ray); }
+void allHits(const WideBvh& bvh, const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit) {
+    all(bvh, ray, visit);
 }
 
 } // namespace kestrel

@@ -3,6 +3,7 @@
 #pragma once
 #include "scene/bvh.h"
 #include "scene/trace.h"
+#include "scene/wide_bvh.h"
 #include <functional>
 #include <optional>
 
@@ -14,5 +15,10 @@ std::optional<TraceHit> closestHit(const Bvh& bvh, const TraceRay& ray);
 bool anyHit(const Bvh& bvh, const TraceRay& ray);
 // Hands every hit to `visit`, in no particular order, until that returns true.
 void allHits(const Bvh& bvh, const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit);
+
+// The same through a wide hierarchy, for rays with 0 <= tMin: equal to the bit.
+std::optional<TraceHit> closestHit(const WideBvh& bvh, const TraceRay& ray);
+bool anyHit(const WideBvh& bvh, const TraceRay& ray);
+void allHits(const WideBvh& bvh, const TraceRay& ray, const std::function<bool(const TraceHit&)>& visit);
 
 } // namespace kestrel

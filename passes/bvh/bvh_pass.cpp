@@ -1,6 +1,8 @@
 #include "bvh_pass.h"
 #include "execute/commands.h"
+#include "graph/many_rays.h"
 #include "scene/bvh.h"
+#include "scene/wide_bvh.h"
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -17,6 +19,7 @@ std::uint64_t nodeBytes(std::uint64_t triangles) {
 std::uint64_t triangleBytes(std::uint64_t triangles) {
     return std::max<std::uint64_t>(1, triangles) * sizeof(BvhTriangle);
 }
+std::uint64_t itemBytes(std::uint64_t triangles) { return mostWideItems(triangles) * sizeof(WideItem); }
 
 } // namespace
 
@@ -25,18 +28,37 @@ PassType BvhPass::type() {
                "Bvh", "Bounding volume hierarchy over the triangles, built on the CPU, traversed in GLSL")
         .output("tracer", PortKind::Tracer, "Exact visibility and closest hits")
         .output("hits", PortKind::Hits, "Every hit along a ray")
-        .internal("nodes", PortKind::Buffer, "Inner nodes (shared/bvh.h)")
-        .internal("triangles", PortKind::Buffer, "Triangles in the order of the leaves (shared/bvh.h)")
-        .number("leaf", &BvhPass::leaf, 1, 15, "triangles", "Most triangles in a leaf")
-        .number("bins", &BvhPass::bins, 2, 64, "", "Candidate splits an axis in the surface area heuristic");
+        .internal("items", PortKind::Buffer, "Nodes and triangles of the wide layout (shared/wide_bvh.h)")
+        .internal("nodes", PortKind::Buffer, "Inner nodes of the binary layout (shared/bvh.h)")
+        .internal("triangles", PortKind::Buffer,
+                  "Triangles of the binary layout in the order of the leaves (shared/bvh.h)")
+        .choice(
+            "layout", &BvhPass::layout, {"wide", "binary"},
+            "wide: four children a node, quantized boxes, single triangles; binary: exact boxes, the plain "
+            "form. The hits are the same to the bit")
+        .number("leaf", &BvhPass::leaf, 1, 15, "triangles", "Most triangles in a leaf of the binary layout")
+        .number("bins", &BvhPass::bins, 2, 32, "", "Candidate splits an axis in the surface area heuristic");
 }
 
 Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& demand) const {
     Declaration declaration;
     const std::uint64_t triangles = world.facts.triangles;
-    const std::uint64_t texels = triangleBytes(triangles) / texelBytes;
+    const bool wide = layout == Layout::Wide;
+    std::vector<std::pair<const char*, std::uint64_t>> buffers;
+    if (wide)
+        buffers = {{"items", itemBytes(triangles)}};
+    else
+        buffers = {{"nodes", nodeBytes(triangles)}, {"triangles", triangleBytes(triangles)}};
     const auto limit = static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
-    const std::uint64_t most = std::max(texels, nodeBytes(triangles) / texelBytes);
+    // imageBuffer is the fastest random read on a CPU driver.
+    std::vector<Use> reads, writes;
+    std::uint64_t most = 0;
+    for (const auto& [port, bytes] : buffers) {
+        declaration.outputs.push_back({.port = port, .desc = Desc::buffer(bytes, Format::RGBA32UI)});
+        reads.push_back({.port = port, .access = Access::Image});
+        writes.push_back({.port = port, .access = Access::Copy, .write = true});
+        most = std::max(most, bytes / texelBytes);
+    }
     if (most > limit)
         declaration.problems.push_back(
             {"",
@@ -44,25 +66,19 @@ Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& de
                          limit),
              true});
 
-    declaration.outputs.push_back(
-        {.port = "nodes", .desc = Desc::buffer(nodeBytes(triangles), Format::RGBA32UI)});
-    declaration.outputs.push_back(
-        {.port = "triangles", .desc = Desc::buffer(triangleBytes(triangles), Format::RGBA32UI)});
-    // imageBuffer is the fastest random read on a CPU driver.
-    const std::vector<Use> reads = {{.port = "nodes", .access = Access::Image},
-                                    {.port = "triangles", .access = Access::Image}};
     const auto provide = [&](const char* port, const char* define, Bits given) {
         declaration.outputs.push_back({.port = port, .desc = Desc::module(given)});
-        Module module{.port = port, .shader = "bvh/bvh.glsl", .defines = {{define, "1"}}, .uses = reads};
+        Module module{.port = port,
+                      .shader = wide ? "bvh/wide.glsl" : "bvh/bvh.glsl",
+                      .defines = {{define, "1"}},
+                      .uses = reads};
         if (world.facts.hasMasked) module.defines.emplace("MATERIAL_MASKED", "1");
         declaration.modules.push_back(std::move(module));
     };
-    if (demand.reads("tracer")) provide("tracer", "PROVIDES_TRACER", provides::Surface);
+    if (demand.reads("tracer"))
+        provide("tracer", "PROVIDES_TRACER", provides::Surface | (wide ? provides::ManyRays : 0));
     if (demand.reads("hits")) provide("hits", "PROVIDES_HITS", provides::Surface);
-    declaration.steps.push_back({.name = "build",
-                                 .uses = {{.port = "nodes", .access = Access::Copy, .write = true},
-                                          {.port = "triangles", .access = Access::Copy, .write = true}},
-                                 .group = "generation"});
+    declaration.steps.push_back({.name = "build", .uses = writes, .group = "generation"});
     if (!world.facts.hasMasked)
         declaration.leftOut.push_back({"alpha test at hits", "no material is masked or blended"});
     declaration.depends = Causes::Geometry | Causes::Transforms | Causes::Materials | Causes::Properties;
@@ -70,9 +86,13 @@ Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& de
 }
 
 void BvhPass::execute(const Step&, Commands& commands) {
-    const Bvh bvh = buildBvh(commands.geometry(), {.maxLeaf = leaf, .bins = bins});
-    commands.upload("nodes", bvh.nodes);
-    commands.upload("triangles", bvh.triangles);
+    if (layout == Layout::Binary) {
+        const Bvh bvh = buildBvh(commands.geometry(), {.maxLeaf = leaf, .bins = bins});
+        commands.upload("nodes", bvh.nodes);
+        commands.upload("triangles", bvh.triangles);
+    } else {
+        commands.upload("items", widened(buildBvh(commands.geometry(), {.maxLeaf = 1, .bins = bins})).items);
+    }
 }
 
 } // namespace kestrel

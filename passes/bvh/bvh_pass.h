@@ -2,6 +2,7 @@
 // proxy.
 #pragma once
 #include "graph/registry.h"
+#include <cstdint>
 
 namespace kestrel {
 
@@ -12,6 +13,9 @@ public:
                                       const Demand& demand) const override;
     void execute(const Step& step, Commands& commands) override;
 
+    enum class Layout : std::uint8_t { Wide, Binary };
+
+    Layout layout = Layout::Wide;
     int leaf = 4;
     int bins = 16;
 };

@@ -4,6 +4,10 @@
 
 SHARED_BEGIN
 
+#ifdef __cplusplus
+using glm::floatBitsToInt;
+#endif
+
 struct TriangleHit {
     float t; // distance along the direction
     float u; // barycentric weight of the second vertex
@@ -57,14 +61,16 @@ inline vec2 besideRay(TriangleRay ray, vec3 point) {
 }
 
 // Twice the signed area of the triangle of the edge from b to c and the ray: its sign tells the side on which the edge
-// passes the ray. `left`: that side, where an edge that goes through the ray passes it as if the ray stood a little beside
-// it, towards x and yet less towards y (what rasterizers call the top-left rule). Products are compared, not subtracted:
-// rounding keeps their order, and the same edge from c to b has exactly the other side.
-inline float edgeArea(vec2 b, vec2 c, OUT(bool) left) {
+// passes the ray. `side`: that side, in the sign bit, where an edge that goes through the ray passes it as if the ray stood
+// a little beside it, towards x and yet less towards y (what rasterizers call the top-left rule). Products are compared,
+// not subtracted: rounding keeps their order, and the same edge from c to b has exactly the other side. (A difference of
+// different floats has the sign of their order. Signs are kept as words: a CPU driver packs and unpacks booleans.)
+inline float edgeArea(vec2 b, vec2 c, OUT(int) side) {
     UNCONTRACTED float p = c.x * b.y;
     UNCONTRACTED float q = c.y * b.x;
-    const bool beside = c.y != b.y ? c.y > b.y : b.x > c.x;
-    left = p != q ? p > q : beside;
+    UNCONTRACTED float order = q - p;
+    const float beside = c.y != b.y ? b.y - c.y : c.x - b.x;
+    side = floatBitsToInt(p != q ? order : beside);
     return p - q;
 }
 
@@ -78,10 +84,10 @@ inline bool intersectTriangle(TriangleRay ray, float tMin, float tMax, vec3 p0, 
     const vec2 a2 = besideRay(ray, a);
     const vec2 b2 = besideRay(ray, b);
     const vec2 c2 = besideRay(ray, c);
-    bool leftA, leftB, leftC;
-    const float wa = edgeArea(b2, c2, leftA);
-    const float wb = edgeArea(c2, a2, leftB);
-    const float wc = edgeArea(a2, b2, leftC);
+    int sideA, sideB, sideC;
+    const float wa = edgeArea(b2, c2, sideA);
+    const float wb = edgeArea(c2, a2, sideB);
+    const float wc = edgeArea(a2, b2, sideC);
     const vec3 normal = cross(b - a, c - a);
     const float slope = dot(normal, ray.direction);
     // On the plane, but no farther off than the corners are: of a triangle seen along its plane the slope is rounding.
@@ -93,7 +99,7 @@ inline bool intersectTriangle(TriangleRay ray, float tMin, float tMax, vec3 p0, 
     hit.t = t;
     hit.u = wb / sum;
     hit.v = wc / sum;
-    const bool inside = leftA == leftB && leftB == leftC;
+    const bool inside = ((sideA ^ sideB) | (sideB ^ sideC)) >= 0;
     return inside && sum != 0.0f && t >= tMin && t <= tMax;
 }
 

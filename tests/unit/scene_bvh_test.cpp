@@ -72,11 +72,34 @@ std::vector<TraceHit> bruteForce(const Geometry& g, const TraceRay& ray) {
     return hits;
 }
 
-// Closest, any and all hits of random rays through the geometry equal brute force, to the bit. Returns how
-// many rays hit something.
+// What a tree answers is what brute force found, sorted, to the bit.
+template<class Tree>
+void expectAnswers(const Tree& bvh, const TraceRay& ray, const std::vector<TraceHit>& expected) {
+    const auto closest = closestHit(bvh, ray);
+    EXPECT_EQ(closest.has_value(), !expected.empty());
+    if (closest && !expected.empty()) {
+        EXPECT_EQ(*closest, expected.front());
+    }
+    EXPECT_EQ(anyHit(bvh, ray), !expected.empty());
+    std::vector<TraceHit> all;
+    allHits(bvh, ray, [&](const TraceHit& hit) {
+        all.push_back(hit);
+        return false;
+    });
+    std::sort(all.begin(), all.end(), [](const TraceHit& a, const TraceHit& b) {
+        return a.t != b.t ? a.t < b.t : a.triangle < b.triangle;
+    });
+    EXPECT_EQ(all, expected);
+}
+
+WideBvh buildWide(const Geometry& g) { return widened(buildBvh(g, {.maxLeaf = 1})); }
+
+// Closest, any and all hits of random rays through the geometry equal brute force, to the bit, in both
+// layouts. Returns how many rays hit something.
 int expectEqualsBruteForce(const Geometry& g, const BvhSettings& settings, std::uint32_t rays,
                            float scale = 1) {
     const Bvh bvh = buildBvh(g, settings);
+    const WideBvh wide = buildWide(g);
     int hitting = 0;
     for (std::uint32_t i = 0; i < rays; ++i) {
         const glm::vec3 from = 1.5f * scale * pointInCube(90000 + 2 * i);
@@ -85,21 +108,8 @@ int expectEqualsBruteForce(const Geometry& g, const BvhSettings& settings, std::
         if (i % 3 == 1) ray.tMax = 0.7f * scale;
         if (i % 3 == 2) ray.tMin = 0.4f * scale;
         const std::vector<TraceHit> expected = bruteForce(g, ray);
-        const auto closest = closestHit(bvh, ray);
-        EXPECT_EQ(closest.has_value(), !expected.empty());
-        if (closest && !expected.empty()) {
-            EXPECT_EQ(*closest, expected.front());
-        }
-        EXPECT_EQ(anyHit(bvh, ray), !expected.empty());
-        std::vector<TraceHit> all;
-        allHits(bvh, ray, [&](const TraceHit& hit) {
-            all.push_back(hit);
-            return false;
-        });
-        std::sort(all.begin(), all.end(), [](const TraceHit& a, const TraceHit& b) {
-            return a.t != b.t ? a.t < b.t : a.triangle < b.triangle;
-        });
-        EXPECT_EQ(all, expected);
+        expectAnswers(bvh, ray, expected);
+        expectAnswers(wide, ray, expected);
         if (!expected.empty()) ++hitting;
     }
     return hitting;
@@ -133,12 +143,45 @@ int checkTree(const Bvh& bvh, std::uint32_t reference, const Box& box, std::vect
     return depth + 1;
 }
 
+// The same of a wide tree: planes lie outside of what they bound by a 256th of a step at least.
+int checkWide(const WideBvh& wide, std::uint32_t at, Box& box, std::vector<int>& seen) {
+    const auto& texels = wide.items[at].texels;
+    if ((texels[0].w & shared::wideNode) == 0) {
+        ++seen[texels[0].w];
+        for (const glm::uvec4& texel : texels) box.add(glm::uintBitsToFloat(glm::uvec3(texel)));
+        return 0;
+    }
+    int depth = 0;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        if ((texels[2].w >> k & 1u) == 0) continue;
+        const std::uint32_t below = (texels[1].w + shared::wideTexelOf(1u << k)) / shared::wideTexels;
+        EXPECT_GT(below, at);
+        Box child;
+        depth = std::max(depth, checkWide(wide, below, child, seen));
+        for (int axis = 0; axis < 3; ++axis) {
+            const double step = std::ldexp(1.0, static_cast<int>(texels[0].w >> (8 * axis) & 255u) - 127);
+            const double origin = glm::uintBitsToFloat(texels[0][axis]);
+            const auto plane = [&](std::uint32_t word) { return origin + step * (word >> (8 * k) & 255u); };
+            EXPECT_LE(plane(texels[1][axis]) + step / 256, child.min[axis]);
+            EXPECT_GE(plane(texels[2][axis]) - step / 256, child.max[axis]);
+        }
+        box.add(child);
+    }
+    return depth + 1;
+}
+
 void expectValidTree(const Geometry& g, const Bvh& bvh) {
     std::vector<int> seen(g.triangleCount(), 0);
     const int depth = checkTree(bvh, 0, g.bounds, seen);
     EXPECT_EQ(depth, bvh.depth);
     EXPECT_LE(bvh.depth, static_cast<int>(shared::bvhStackSize));
     EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
+    const WideBvh wide = buildWide(g);
+    Box box;
+    EXPECT_EQ(checkWide(wide, 0, box, seen), wide.depth);
+    EXPECT_LE(wide.depth, static_cast<int>(shared::wideStackSize));
+    EXPECT_LE(wide.items.size(), mostWideItems(g.triangleCount()));
+    EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 2; }));
 }
 
 TEST(Bvh, EmptyGeometryHasARootThatNothingHits) {
@@ -146,6 +189,7 @@ TEST(Bvh, EmptyGeometryHasARootThatNothingHits) {
     ASSERT_EQ(bvh.nodes.size(), 1u);
     EXPECT_FALSE(closestHit(bvh, {{0, 0, 1}, {0, 0, -1}}));
     EXPECT_FALSE(anyHit(bvh, {{0, 0, 1}, {0, 0, -1}}));
+    EXPECT_FALSE(closestHit(buildWide({}), {{0, 0, 1}, {0, 0, -1}}));
 }
 
 TEST(Bvh, OneTriangleIsHitWhereItIs) {
@@ -238,11 +282,13 @@ TEST(Bvh, DepthStaysWithinTheStackForGeometricSeries) {
 TEST(Bvh, NoRaySlipsThroughTheEdgesOfAClosedSurface) {
     const Geometry g = sphereGeometry(40);
     const Bvh bvh = buildBvh(g);
+    const WideBvh wide = buildWide(g);
     for (std::uint32_t i = 0; i < g.triangleCount(); ++i) {
         const glm::vec3 a = g.positions[g.indices[3 * i]], b = g.positions[g.indices[3 * i + 1]];
         const glm::vec3 inside = 0.3f * pointInCube(i);
         const auto leaks = [&](const glm::vec3& to) {
-            return !anyHit(bvh, {inside, glm::normalize(to - inside)});
+            const TraceRay ray{inside, glm::normalize(to - inside)};
+            return !anyHit(bvh, ray) || !anyHit(wide, ray);
         };
         EXPECT_FALSE(leaks(0.5f * (a + b)));
         EXPECT_FALSE(leaks(glm::mix(a, b, 0.1f + 0.8f * unit(i))));
@@ -252,21 +298,22 @@ TEST(Bvh, NoRaySlipsThroughTheEdgesOfAClosedSurface) {
     for (int axis = 0; axis < 3; ++axis) {
         glm::vec3 d(0);
         d[axis] = 1;
-        EXPECT_TRUE(anyHit(bvh, {{0, 0, 0}, d}));
-        EXPECT_TRUE(anyHit(bvh, {{0, 0, 0}, -d}));
+        EXPECT_TRUE(anyHit(bvh, {{0, 0, 0}, d}) && anyHit(wide, {{0, 0, 0}, d}));
+        EXPECT_TRUE(anyHit(bvh, {{0, 0, 0}, -d}) && anyHit(wide, {{0, 0, 0}, -d}));
     }
 }
 
 // Rays at every vertex, along and beside every edge of closed and open surfaces, in many directions: what is
 // closed is met once from inside, and twice by a ray through it; a sheet once.
 TEST(Bvh, ASurfaceIsMetOnceAtEveryVertexAndEdge) {
-    const auto count = [](const Bvh& bvh, const TraceRay& ray) {
+    const auto count = [](const auto& bvh, const TraceRay& ray) {
         int hits = 0;
         allHits(bvh, ray, [&](const TraceHit&) { return ++hits, false; });
         return hits;
     };
     const Geometry ball = sphereGeometry(24);
     const Bvh ballBvh = buildBvh(ball);
+    const WideBvh ballWide = buildWide(ball);
     for (std::uint32_t i = 0; i < ball.triangleCount(); ++i) {
         const auto corner = [&](std::uint32_t k) { return ball.positions[ball.indices[3 * i + k % 3]]; };
         for (std::uint32_t k = 0; k < 12; ++k) {
@@ -274,6 +321,7 @@ TEST(Bvh, ASurfaceIsMetOnceAtEveryVertexAndEdge) {
             const glm::vec3 at =
                 k % 2 == 0 ? corner(k) : glm::mix(corner(k), corner(k + 1), unit(31 * i + k));
             ASSERT_EQ(count(ballBvh, {inside, at - inside}), 1) << i << " " << k;
+            ASSERT_EQ(count(ballWide, {inside, at - inside}), 1) << i << " " << k;
         }
     }
     // A sheet of 16 x 16 cells, flat and then in waves, whose vertices lie on round numbers.
@@ -288,6 +336,7 @@ TEST(Bvh, ASurfaceIsMetOnceAtEveryVertexAndEdge) {
                 addTriangle(sheet, at(x + 1, y + 1), at(x, y + 1), at(x, y));
             }
         const Bvh bvh = buildBvh(sheet);
+        const WideBvh wide = buildWide(sheet);
         std::uint32_t number = 0;
         for (int y = 1; y < 16; ++y)
             for (int x = 1; x < 16; ++x)
@@ -299,6 +348,8 @@ TEST(Bvh, ASurfaceIsMetOnceAtEveryVertexAndEdge) {
                     const glm::vec3 aside = 0.5f * pointInCube(++number);
                     const glm::vec3 from = k < 4 ? to + glm::vec3(0, 0, 2) : glm::vec3(aside.x, aside.y, 3);
                     ASSERT_EQ(count(bvh, {from, to - from}), 1) << x << ", " << y << " " << k;
+                    ASSERT_EQ(count(wide, {from, to - from}), 1) << x << ", " << y << " " << k;
+                    ASSERT_EQ(count(wide, {to + (to - from), from - to}), 1) << x << ", " << y << " " << k;
                     ASSERT_EQ(count(bvh, {to + (to - from), from - to}), 1) << x << ", " << y << " " << k;
                 }
     }

@@ -1,0 +1,233 @@
+#include "scene/wide_bvh.h"
+#include "core/check.h"
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace kestrel {
+namespace {
+
+using Child = BvhNode::Child;
+
+// By how many steps a plane lies outside of what it bounds, at least (shared/wide_bvh.h: wideMet()).
+constexpr double margin = 1.0 / 256;
+constexpr double mostSteps = 255;
+
+// The planes of up to four boxes along one axis.
+struct Planes {
+    float origin = 0;
+    std::uint32_t exponent = 1; // biased, as in a float
+    std::uint32_t low = 0, high = 0;
+};
+
+bool absent(const Child& child) {
+    return shared::bvhIsLeaf(child.reference) && shared::bvhLeafCount(child.reference) == 0;
+}
+
+// By bits, since std::frexp() and std::ldexp() took a third of the time.
+double powerOfTwo(int exponent) {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
+}
+int exponentAbove(double x) { return static_cast<int>(std::bit_cast<std::uint64_t>(x) >> 52) - 1022; }
+
+Planes quantized(const Child* children, int count, int axis) {
+    double low = children[0].min[axis], high = children[0].max[axis];
+    for (int i = 1; i < count; ++i) {
+        low = std::min<double>(low, children[i].min[axis]);
+        high = std::max<double>(high, children[i].max[axis]);
+    }
+    Planes planes;
+    // The smallest power of two that leaves room for the margins, which may be an ulp of the origin.
+    int exponent = high > low ? exponentAbove((high - low) / (mostSteps - 1)) : -125;
+    double step = 0, steps = 0; // and how many go into 1
+    for (exponent = std::clamp(exponent, -125, 127);; ++exponent) {
+        step = powerOfTwo(exponent);
+        steps = powerOfTwo(-exponent);
+        planes.origin = static_cast<float>(low - 2 * margin * step);
+        if (planes.origin > low - 1.5 * margin * step)
+            planes.origin = std::nextafter(planes.origin, -std::numeric_limits<float>::infinity());
+        if ((high - planes.origin) * steps + margin < mostSteps) break;
+    }
+    planes.exponent = static_cast<std::uint32_t>(exponent + 127);
+    for (int i = 0; i < count; ++i) {
+        const auto at = [&](float x) { return (static_cast<double>(x) - planes.origin) * steps; };
+        const auto low8 =
+            static_cast<std::uint32_t>(at(children[i].min[axis]) - margin); // down, since it is positive
+        const auto high8 = static_cast<std::uint32_t>(at(children[i].max[axis]) + margin) + 1u;
+        planes.low |= low8 << (8 * i);
+        planes.high |= high8 << (8 * i);
+    }
+    return planes;
+}
+
+float halfArea(const Child& child) {
+    const glm::vec3 s = child.max - child.min;
+    return s.x * s.y + s.y * s.z + s.z * s.x;
+}
+
+// What the levels below a node of the binary tree are made into, from the bottom up: by the fewest visits
+// that the surface area heuristic expects (Ylitie, Karras and Laine 2017, section 3.1, with leaves of one
+// triangle).
+struct Below {
+    float cost[5] = {}; // of the whole as 1 to 4 children of one node; [0] unused
+    // How many of them come of the left child; 0: it is a child itself. [0]: where it is a node, of four.
+    std::uint8_t left[5] = {};
+    float area = 0; // of all triangles, twice
+    std::uint32_t triangles = 0;
+};
+
+class Widener {
+public:
+    explicit Widener(const Bvh& binary)
+        : binary_(binary)
+        , below_(binary.nodes.size()) {
+        wide_.items.reserve(binary.triangles.size() + binary.nodes.size() / 2 + 1);
+    }
+
+    WideBvh operator()() {
+        for (std::size_t i = below_.size(); i-- > 0;) weigh(i);
+        wide_.items.emplace_back();
+        node(0, 0, 1);
+        return std::move(wide_);
+    }
+
+private:
+    struct Found {
+        Child child;
+        float size; // of its triangles, in the mean
+    };
+
+    // Of an inner node what is known, of a leaf what is made here.
+    const Below& below(const Child& child, Below& leaf) const {
+        if (!shared::bvhIsLeaf(child.reference)) return below_[child.reference];
+        if (absent(child)) return leaf;
+        std::fill(std::begin(leaf.cost), std::end(leaf.cost), halfArea(child));
+        const BvhTriangle& t = binary_.triangles[shared::bvhLeafFirst(child.reference)];
+        leaf.area = glm::length(glm::cross(t.p1 - t.p0, t.p2 - t.p0));
+        leaf.triangles = 1;
+        return leaf;
+    }
+
+    void weigh(std::size_t index) {
+        const auto& children = binary_.nodes[index].children;
+        Below leaves[2];
+        const Below& left = below(children[0], leaves[0]);
+        const Below& right = below(children[1], leaves[1]);
+        Below& whole = below_[index];
+        for (std::size_t count = 2; count <= 4; ++count) {
+            whole.cost[count] = std::numeric_limits<float>::infinity();
+            for (std::size_t k = 1; k < count; ++k) {
+                const float cost = left.cost[k] + right.cost[count - k];
+                if (whole.left[count] != 0 && !(cost < whole.cost[count])) continue;
+                whole.cost[count] = cost;
+                whole.left[count] = static_cast<std::uint8_t>(k);
+            }
+        }
+        Box box;
+        for (const Child& child : children)
+            if (!absent(child)) {
+                box.add(child.min);
+                box.add(child.max);
+            }
+        const glm::vec3 s = box.empty() ? glm::vec3(0) : box.size();
+        whole.cost[1] = whole.cost[4] + s.x * s.y + s.y * s.z + s.z * s.x;
+        whole.left[0] = whole.left[4];
+        for (std::size_t count = 2; count <= 4; ++count)
+            if (whole.cost[1] <= whole.cost[count]) {
+                whole.cost[count] = whole.cost[1];
+                whole.left[count] = 0;
+            }
+        whole.area = left.area + right.area;
+        whole.triangles = left.triangles + right.triangles;
+    }
+
+    // The children that the parts of a binary node become, where there may be so many.
+    void take(const Child& child, std::size_t most, std::array<Found, 4>& found, std::size_t& count) const {
+        if (absent(child)) return;
+        Below leaf;
+        const Below& whole = below(child, leaf);
+        if (most == 1 || whole.left[most] == 0) {
+            found[count++] = {child, whole.area / static_cast<float>(whole.triangles)};
+            return;
+        }
+        const auto& parts = binary_.nodes[child.reference].children;
+        take(parts[0], whole.left[most], found, count);
+        take(parts[1], most - whole.left[most], found, count);
+    }
+
+    void node(std::uint32_t from, std::size_t to, int depth) {
+        wide_.depth = std::max(wide_.depth, depth);
+        std::array<Found, 4> children;
+        std::size_t count = 0;
+        const std::size_t left = below_[from].left[0];
+        take(binary_.nodes[from].children[0], left, children, count);
+        take(binary_.nodes[from].children[1], 4 - left, children, count);
+        // Large triangles first, which are what stops a ray soonest: a fifth fewer visits in a hall, by any
+        // hits.
+        std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count),
+                         [](const Found& a, const Found& b) { return a.size > b.size; });
+        const std::size_t first = wide_.items.size();
+        wide_.items.resize(first + count);
+        wide_.items[to] = inner(children, count, static_cast<std::uint32_t>(first));
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint32_t reference = children[i].child.reference;
+            if (shared::bvhIsLeaf(reference))
+                wide_.items[first + i] = triangle(binary_.triangles[shared::bvhLeafFirst(reference)]);
+            else
+                node(reference, first + i, depth + 1);
+        }
+    }
+
+    static WideItem inner(const std::array<Found, 4>& found, std::size_t count, std::uint32_t first) {
+        std::array<Child, 4> children;
+        for (std::size_t i = 0; i < count; ++i) children[i] = found[i].child;
+        WideItem item{};
+        item.texels[0].w = shared::wideNode;
+        item.texels[1].w = shared::wideTexels * first;
+        item.texels[2].w = (1u << count) - 1u;
+        if (count == 0) return item;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Planes planes = quantized(children.data(), static_cast<int>(count), axis);
+            item.texels[0][axis] = std::bit_cast<std::uint32_t>(planes.origin);
+            item.texels[0].w |= planes.exponent << (8 * axis);
+            item.texels[1][axis] = planes.low;
+            item.texels[2][axis] = planes.high;
+        }
+        return item;
+    }
+
+    static WideItem triangle(const BvhTriangle& t) {
+        const auto texel = [](const glm::vec3& p, std::uint32_t w) {
+            return glm::uvec4(std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
+                              std::bit_cast<std::uint32_t>(p.z), w);
+        };
+        return {{texel(t.p0, t.triangle), texel(t.p1, t.material), texel(t.p2, t.triangleClass)}};
+    }
+
+    const Bvh& binary_;
+    std::vector<Below> below_;
+    WideBvh wide_;
+};
+
+} // namespace
+
+std::uint64_t mostWideItems(std::uint64_t triangles) {
+    // Every inner node but the root has two children or more.
+    return 1 + 2 * std::max<std::uint64_t>(1, triangles);
+}
+
+WideBvh widened(const Bvh& binary) {
+    KESTREL_CHECK(std::ranges::all_of(binary.nodes, [](const BvhNode& node) {
+        return std::ranges::all_of(node.children, [](const Child& child) {
+            return !shared::bvhIsLeaf(child.reference) || shared::bvhLeafCount(child.reference) <= 1;
+        });
+    }));
+    WideBvh wide = Widener(binary)();
+    KESTREL_CHECK_LE(wide.items.size() * shared::wideTexels, shared::wideMostTexels);
+    KESTREL_CHECK_LE(wide.depth, static_cast<int>(shared::wideStackSize));
+    return wide;
+}
+
+} // namespace kestrel
