@@ -1,6 +1,7 @@
 #include "ray_query.h"
 #include "draw/material_defines.h"
 #include "execute/commands.h"
+#include "graph/many_rays.h"
 #include "shared/ray.h"
 #include <algorithm>
 
@@ -9,6 +10,9 @@ namespace {
 // A dispatch may have 65,535 groups an axis at least, so rays are laid out in rows of this many groups.
 constexpr std::uint32_t groupSize = 64;
 constexpr std::uint32_t groupsPerRow = 32768;
+// That an invocation traces where the tracer takes many: enough that a lane seldom waits for others, few
+// enough that the loops of all together stay below what drivers allow (lib/iterations.glsl).
+constexpr std::uint32_t raysTogether = 16;
 } // namespace
 
 PassType RayQuery::type() {
@@ -45,6 +49,10 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
         rays.format == Format::RGBA32UI &&
         rays.bytes / 16 <= static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
     if (!texels) step.defines.emplace("RAYS_STORAGE", "1");
+    if (query == Query::Any && texels && (inputs["tracer"].desc.provides & provides::ManyRays) != 0) {
+        step.modules = {{"tracer", requests::ManyRays}};
+        step.defines.emplace("RAYS", std::to_string(raysTogether));
+    }
     step.uses.push_back({.port = "rays", .access = texels ? Access::Image : Access::Storage});
     const auto give = [&](const char* port, const char* define, std::uint64_t bytes) {
         if (!demand.reads(port)) return;
@@ -60,9 +68,10 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
     return declaration;
 }
 
-void RayQuery::execute(const Step&, Commands& commands) {
+void RayQuery::execute(const Step& step, Commands& commands) {
     const auto count = static_cast<std::uint32_t>(rayCount(commands.desc("rays")));
-    const std::uint32_t groups = (count + groupSize - 1) / groupSize;
+    const std::uint32_t perGroup = groupSize * (step.defines.contains("RAYS") ? raysTogether : 1);
+    const std::uint32_t groups = (count + perGroup - 1) / perGroup;
     commands.dispatch(std::min(groups, groupsPerRow), (groups + groupsPerRow - 1) / groupsPerRow);
 }
 

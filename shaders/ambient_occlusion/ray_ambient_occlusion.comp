@@ -12,7 +12,9 @@
 #include "shared/random.h"
 #include "lib/face.glsl"
 #include "lib/iterations.glsl"
+#ifndef PIXELS
 #include <port:tracer>
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -25,37 +27,34 @@ layout(r32f) uniform image2D weight;
 layout(std140) uniform DepthView { ViewData depthView; };
 uniform float maximumDistance; // 0: infinite
 
-void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, imageSize(visibility)))) return;
+// What the rays of a pixel start from.
+struct Point {
+    bool background;
+    vec3 origin;
+    vec3 normal;
+    vec4 face;
+    uint seed;
+};
 
+Point pointAt(ivec2 pixel) {
     float z = texelFetch(depth, pixel, 0).r;
-    vec3 n = imageLoad(normal, pixel).xyz;
+    vec4 stored = imageLoad(normal, pixel);
+    vec3 n = stored.xyz;
     bool background = z == 0.0 || dot(n, n) == 0.0;
     n = background ? vec3(0.0, 0.0, 1.0) : normalize(n);
     vec3 origin = positionFromDepth(depthView, vec2(pixel) + 0.5, z);
-    vec4 face = faceAt(pixel, n, depthView, origin, imageLoad(normal, pixel).w);
-    uint seed = pixelSeed(uvec2(pixel), randomRayDirection, frame.seed);
+    return Point(background, origin, n, faceAt(pixel, n, depthView, origin, stored.w),
+                 pixelSeed(uvec2(pixel), randomRayDirection, frame.seed));
+}
 
-    float open = 0.0, sum = 0.0;
-    for (uint i = 0u; i < uint(RAYS); ++i) {
-        ITERATION;
-        vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, seed);
-        Ray ray = surfaceRay(origin, n, cosineHemisphere(u, n));
-        if (maximumDistance > 0.0) ray.tMax = maximumDistance;
-        tracer_aim(ray);
-#ifdef COSINE_RATIO
-        float w = ray.weight;
-#else
-        float w = ray.weight > 0.0 ? 1.0 : 0.0;
-#endif
-        bool leaves = leaveFace(ray, face);
-        if (background || w == 0.0) ray.tMax = -1.0; // an empty interval: no tracer walks it
-        bool met = tracer_anyHit(ray);
-        if (leaves && !met) open += w;
-        sum += w;
-    }
-    ITERATIONS_END;
+Ray rayFrom(Point point, uint i) {
+    vec2 u = scrambledSobol(frame.index * uint(TOTAL_RAYS) + uint(FIRST_RAY) + i, point.seed);
+    Ray ray = surfaceRay(point.origin, point.normal, cosineHemisphere(u, point.normal));
+    if (maximumDistance > 0.0) ray.tMax = maximumDistance;
+    return ray;
+}
+
+void give(ivec2 pixel, bool background, float open, float sum) {
 #ifdef CONTINUES
     // Between steps the images hold sums.
     open += imageLoad(visibility, pixel).r;
@@ -79,3 +78,69 @@ void main() {
 #endif
 #endif
 }
+
+#ifdef PIXELS
+
+// The tracer takes many rays at once: those of so many pixels, one above the other.
+ivec2 pixelOf(uint i) {
+    return ivec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y * uint(PIXELS) + i);
+}
+
+uint below = 0u; // which rays do not leave their faces
+Ray tracer_ray(uint i) {
+    Point point = pointAt(pixelOf(i / uint(RAYS)));
+    Ray ray = rayFrom(point, i % uint(RAYS));
+    if (!leaveFace(ray, point.face)) below |= 1u << i;
+    return ray;
+}
+#include <port:tracer>
+
+void main() {
+    const uint allRays = (1u << uint(RAYS)) - 1u;
+    ivec2 size = imageSize(visibility);
+    uint wanted = 0u;
+    for (uint i = 0u; i < uint(PIXELS); ++i) {
+        ITERATION;
+        ivec2 pixel = pixelOf(i);
+        if (all(lessThan(pixel, size)) && !pointAt(pixel).background) wanted |= allRays << (i * uint(RAYS));
+    }
+    uint open = wanted & ~tracer_anyHits(wanted);
+    open &= ~below;
+    for (uint i = 0u; i < uint(PIXELS); ++i) {
+        ITERATION;
+        ivec2 pixel = pixelOf(i);
+        uint place = i * uint(RAYS);
+        if (all(lessThan(pixel, size)))
+            give(pixel, (wanted >> place & 1u) == 0u, float(bitCount(open >> place & allRays)), float(RAYS));
+    }
+    ITERATIONS_END;
+}
+
+#else
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(visibility)))) return;
+
+    Point point = pointAt(pixel);
+    float open = 0.0, sum = 0.0;
+    for (uint i = 0u; i < uint(RAYS); ++i) {
+        ITERATION;
+        Ray ray = rayFrom(point, i);
+        tracer_aim(ray);
+#ifdef COSINE_RATIO
+        float w = ray.weight;
+#else
+        float w = ray.weight > 0.0 ? 1.0 : 0.0;
+#endif
+        bool leaves = leaveFace(ray, point.face);
+        if (point.background || w == 0.0) ray.tMax = -1.0; // an empty interval: no tracer walks it
+        bool met = tracer_anyHit(ray);
+        if (leaves && !met) open += w;
+        sum += w;
+    }
+    ITERATIONS_END;
+    give(pixel, point.background, open, sum);
+}
+
+#endif

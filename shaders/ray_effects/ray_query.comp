@@ -1,8 +1,10 @@
-// Each invocation traces one ray of the buffer.
+// Each invocation traces one ray of the buffer, or RAYS of them where the tracer takes many (REQUESTS_MANY).
 #include "shared/ray.h"
 #include "lib/tracer.glsl"
 #include "lib/iterations.glsl"
+#ifndef RAYS
 #include <port:tracer>
+#endif
 
 layout(local_size_x = GROUP_SIZE) in;
 
@@ -22,16 +24,62 @@ layout(std430) writeonly buffer Hits { HitRecord hits[]; };
 layout(std430) writeonly buffer Distance { float distances[]; };
 #endif
 
-void main() {
-    int id = int(gl_GlobalInvocationID.y) * GROUPS_PER_ROW * GROUP_SIZE + int(gl_GlobalInvocationID.x);
-    if (3 * id >= RAY_TEXELS) return;
-    // RayRecord, texel by texel.
+// A ray of the buffer, texel by texel, and whether it exists.
+Ray rayAt(int id, out bool exists) {
     vec4 from = RAY_TEXEL(3 * id);
     vec4 along = RAY_TEXEL(3 * id + 1);
     vec4 surface = RAY_TEXEL(3 * id + 2);
-    Ray ray = Ray(from.xyz, surface.xyz, along.xyz, from.w, along.w, 1.0, 0u);
-    bool exists = (floatBitsToUint(surface.w) & 1u) != 0u;
-    ray.tMax = exists ? ray.tMax : -1.0;
+    exists = (floatBitsToUint(surface.w) & 1u) != 0u;
+    return Ray(from.xyz, surface.xyz, along.xyz, from.w, exists ? along.w : -1.0, 1.0, 0u);
+}
+
+#ifdef RAYS
+
+// Invocations that a driver runs side by side start with neighbours and go on with neighbours.
+const int abreast = 8;
+int rayNumber(uint i) {
+    int invocation = int(gl_GlobalInvocationID.y) * GROUPS_PER_ROW * GROUP_SIZE + int(gl_GlobalInvocationID.x);
+    return (invocation / abreast * RAYS + int(i)) * abreast + invocation % abreast;
+}
+
+Ray tracer_ray(uint i) {
+    bool exists;
+    return rayAt(rayNumber(i), exists);
+}
+#include <port:tracer>
+
+void main() {
+    int count = int(RAY_TEXELS) / 3;
+    uint wanted = 0u;
+    for (uint i = 0u; i < uint(RAYS); ++i) {
+        ITERATION;
+        int id = rayNumber(i);
+        if (id < count && (floatBitsToUint(RAY_TEXEL(3 * id + 2).w) & 1u) != 0u) wanted |= 1u << i;
+    }
+    uint met = tracer_anyHits(wanted);
+    for (uint i = 0u; i < uint(RAYS); ++i) {
+        ITERATION;
+        int id = rayNumber(i);
+        if (id < count) {
+            float t = (met >> i & 1u) != 0u ? 0.0 : rayInfinity;
+#ifdef DISTANCES
+            distances[id] = t;
+#endif
+#ifdef HITS
+            hits[id] = HitRecord(t, 1.0, 0u, 0u, RAY_TEXEL(3 * id + 1).xyz, 0u);
+#endif
+        }
+    }
+    ITERATIONS_END;
+}
+
+#else
+
+void main() {
+    int id = int(gl_GlobalInvocationID.y) * GROUPS_PER_ROW * GROUP_SIZE + int(gl_GlobalInvocationID.x);
+    if (3 * id >= RAY_TEXELS) return;
+    bool exists;
+    Ray ray = rayAt(id, exists);
     tracer_aim(ray);
     Hit hit = noHit;
 #ifdef CLOSEST
@@ -49,3 +97,5 @@ void main() {
     hits[id] = HitRecord(t, ray.weight, met ? hit.id.x : 0u, met ? hit.id.y : 0u, ray.direction, met ? hit.source : 0u);
 #endif
 }
+
+#endif

@@ -4,6 +4,8 @@
 #include "scene/bvh_trace.h"
 #include "shared/ray.h"
 #include "shipped_fixture.h"
+#include <algorithm>
+#include <cstring>
 
 namespace kestrel::test {
 namespace {
@@ -36,6 +38,36 @@ TEST_F(Rays, TheBvhInGlslFindsWhatTheCpuFinds) {
     ASSERT_GT(traced, 1000u);
     // GLSL compilers may contract multiply and add, so a ray that grazes an edge may fall to the other side.
     EXPECT_LE(different, traced / 1000);
+}
+
+// The layouts differ in boxes and order, never in what is met: hits of any, closest and all queries are the
+// same to the bit, where triangles are opaque, masked or blended.
+TEST_F(Rays, BothLayoutsOfTheHierarchyAnswerAlike) {
+    for (const char* source : {"builtin:tower?detail=0.05", "builtin:grove?detail=0.02",
+                               "builtin:lattice?detail=0.2&blended=0.5"}) {
+        const Scene scene = loadScene(source);
+        const auto answers = [&](const std::string& graph, const std::string& query,
+                                 const std::string& layout, const PortRef& port) {
+            std::vector<std::string> settings = {"bvh.layout=" + layout};
+            if (!query.empty()) settings.push_back(query);
+            Graph made = shippedGraph(graph, settings);
+            made.outputs = {{port, {}}};
+            Renderer drawn = renderer(made, scene);
+            drawn.frame();
+            return port.port == "count" ? drawn.read(port).values : as<float>(drawn.readBytes(port));
+        };
+        for (const char* query : {"by_bvh.query=any", "by_bvh.query=closest", ""}) {
+            SCOPED_TRACE(std::string(source) + " " + query);
+            const bool all = query[0] == 0;
+            const PortRef port = all ? PortRef{"count", "count"} : PortRef{"by_bvh", "hits"};
+            const auto wide = answers(all ? "hit_count" : "ray_query", query, "wide", port);
+            const auto binary = answers(all ? "hit_count" : "ray_query", query, "binary", port);
+            ASSERT_EQ(wide.size(), binary.size());
+            // Bits: ids of triangles are no floats.
+            EXPECT_EQ(std::memcmp(wide.data(), binary.data(), wide.size() * sizeof(float)), 0);
+            EXPECT_TRUE(std::ranges::any_of(wide, [](float t) { return t > 0; }));
+        }
+    }
 }
 
 // The same rays through the BVH and through Embree; and the short answer is that of the long one.
