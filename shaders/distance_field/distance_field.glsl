@@ -18,11 +18,7 @@
 void M(aim)(inout Ray ray) {}
 
 #ifdef EMPTY
-bool M(anyHit)(Ray ray) { return false; }
-bool M(closestHit)(Ray ray, out Hit hit) {
-    hit = noHit;
-    return false;
-}
+#include <part:lib/no_hits.glsl>
 #else
 
 layout(std140) uniform M(Grid) { OccupancyGrid M(grid); };

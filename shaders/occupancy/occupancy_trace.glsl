@@ -31,11 +31,7 @@ layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
 void M(aim)(inout Ray ray) {}
 
 #ifdef EMPTY
-bool M(anyHit)(Ray ray) { return false; }
-bool M(closestHit)(Ray ray, out Hit hit) {
-    hit = noHit;
-    return false;
-}
+#include <part:lib/no_hits.glsl>
 #else
 
 #if METHOD != 2

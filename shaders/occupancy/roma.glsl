@@ -25,30 +25,10 @@
 #include "occupancy/aligned.glsl"
 
 layout(std140) uniform M(Grid) { OccupancyGrid M(grid); };
-layout(rgba32f) readonly uniform imageBuffer M(directions);
-OccupancySettings M(settings)() { return alignedSettings(imageLoad(M(directions), 0)); }
-RomaDirection M(candidate)(int map) {
-    int at = 1 + 3 * map;
-    return alignedCandidate(imageLoad(M(directions), at), imageLoad(M(directions), at + 1), imageLoad(M(directions), at + 2));
-}
-
-#ifdef COUNT_EXHAUSTED
-layout(std430) buffer M(Exhausted) { uint M(exhausted)[]; };
-#endif
-
-void M(aim)(inout Ray ray) {
-    aimAligned(ray, ANGULAR);
-#ifdef REQUESTS_SNAP
-    snapAligned(ray, M(candidate)(alignedMap(ray)));
-#endif
-}
+#include <part:occupancy/aim.glsl>
 
 #ifdef EMPTY
-bool M(anyHit)(Ray ray) { return false; }
-bool M(closestHit)(Ray ray, out Hit hit) {
-    hit = noHit;
-    return false;
-}
+#include <part:lib/no_hits.glsl>
 #else
 
 #ifdef MAPS_STORAGE
