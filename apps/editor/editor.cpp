@@ -78,9 +78,9 @@ void Editor::follow() {
     numbers_.add(session_);
 }
 
-// Shaders, plugins and the graph's file, where another program wrote them.
+// Shaders, pictures, plugins and the graph's file, where another program wrote them.
 void Editor::lookAtDisk() {
-    session_.reloadShaders();
+    session_.reloadFiles();
     if (plugins != nullptr) {
         bool changed = false;
         for (const std::string& told : plugins->follow(changed)) say(told);

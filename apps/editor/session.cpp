@@ -144,10 +144,11 @@ bool Session::renderAgain(const std::function<bool()>& enough) {
     return true;
 }
 
-bool Session::reloadShaders() {
+bool Session::reloadFiles() {
     if (renderer_ == nullptr) return false;
     try {
         if (!renderer_->reloadIfChanged()) return false;
+        if (stuck_) taken_ = 0; // what was wrong may be right now, or be wrong still
         problems_.clear();
         stuck_ = false;
         touch();

@@ -52,8 +52,8 @@ public:
     bool renderAgain(const std::function<bool()>& enough = {});
     // From the first frame: the scene's time goes on from where it stands, if it runs.
     void beginAgain();
-    // Shaders that changed on the disk; true if something was compiled anew.
-    bool reloadShaders();
+    // Shaders and pictures that changed on the disk; true if something was compiled anew.
+    bool reloadFiles();
 
     [[nodiscard]] const std::vector<Marked>& problems() const { return problems_; }
     [[nodiscard]] Renderer* renderer() const { return renderer_.get(); }

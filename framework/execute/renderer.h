@@ -1,6 +1,7 @@
 // A graph on a scene, frame after frame: facts, compilation, execution and time in one place. Tests, the
 // command line, sweeps and the editor all render through it.
 #pragma once
+#include "core/file_state.h"
 #include "execute/executor.h"
 #include "graph/plan.h"
 #include "image/image.h"
@@ -78,8 +79,9 @@ public:
     // Seconds of the scene from frame to frame, at least 0; absent: 1 / Scene::frameRate.
     void setTimeStep(std::optional<double> seconds) { options_.timeStep = seconds; }
     void restart(); // frame index 0, the scene's first time, nothing kept
-    // Compiles anew if a shader file changed since it was read; true if so. With an error in the shader the
-    // plan before stays and the InputError is thrown.
+    // Compiles anew if a shader file, or a file that a property names (of unit "file"), changed since it was
+    // read; true if so. With an error in it the plan before stays and the InputError is thrown, once a
+    // change.
     bool reloadIfChanged();
 
     [[nodiscard]] const Graph& graph() const { return graph_; }
@@ -112,6 +114,8 @@ private:
     SceneFacts facts_;
     PassSet passes_;
     std::map<std::string, Growth> grown_; // by pass
+    // What properties name, as it was before it was read last: of this graph, and of one that was refused.
+    std::map<std::filesystem::path, std::optional<FileState>> files_;
     std::unique_ptr<GpuScene> gpu_;
     std::unique_ptr<Executor> executor_;
 

@@ -26,16 +26,16 @@ PassType ImageFile::type() {
 }
 
 std::shared_ptr<const ImageFile::Read> ImageFile::read() const {
-    std::error_code ignored;
-    const auto time = std::filesystem::last_write_time(imageName(file).file, ignored);
-    if (read_ && read_->name == file && read_->values == values && read_->time == time) return read_;
+    // The state is taken before the picture: a write in between shows as a change.
+    const std::optional<FileState> state = fileState(imageName(file).file);
+    if (read_ && read_->name == file && read_->values == values && read_->state == state) return read_;
     Picture picture = readPicture(file);
     const bool colour = picture.image.channels >= 3;
     if (colour &&
         (values == Values::FromSrgb || (values == Values::Auto && picture.format == ImageFormat::Png)))
         picture.image = srgbToLinear(std::move(picture.image));
     if (colour) picture.image = convertChannels(picture.image, 4);
-    read_ = std::make_shared<const Read>(Read{file, values, time, std::move(picture.image)});
+    read_ = std::make_shared<const Read>(Read{file, values, state, std::move(picture.image)});
     return read_;
 }
 
@@ -49,8 +49,10 @@ Declaration ImageFile::declare(const World& world, const Inputs&, const Demand&)
         return declaration;
     };
     if (file.empty()) return refuse("names no file");
+    std::shared_ptr<const Read> held;
     try {
-        const Image& image = read()->image;
+        held = read();
+        const Image& image = held->image;
         const Extent extent{static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height),
                             1};
         const int most = world.capabilities.maxTextureSize;
@@ -65,14 +67,13 @@ Declaration ImageFile::declare(const World& world, const Inputs&, const Demand&)
         return refuse(error.problems().front().text());
     }
     declaration.outputs.push_back(output);
-    declaration.steps.push_back({.name = "upload",
-                                 .run = &ImageFile::show,
-                                 .uses = {{.port = "image", .access = Access::Copy, .write = true}},
-                                 .group = "loading"});
+    declaration.steps.push_back(
+        {.name = "upload",
+         .run = [held](Commands& commands) { commands.uploadImage("image", held->image); },
+         .uses = {{.port = "image", .access = Access::Copy, .write = true}},
+         .group = "loading"});
     declaration.depends = Causes::Properties;
     return declaration;
 }
-
-void ImageFile::show(Commands& commands) const { commands.uploadImage("image", read()->image); }
 
 } // namespace kestrel

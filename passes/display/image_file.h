@@ -1,9 +1,10 @@
 // A picture from a file: a captured G-buffer, a reference of another renderer.
 #pragma once
+#include "core/file_state.h"
 #include "graph/registry.h"
 #include "image/image.h"
-#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace kestrel {
@@ -15,18 +16,18 @@ public:
     static PassType type();
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
-    void show(Commands& commands) const;
 
     std::string file;
     Values values = Values::Auto;
     int guard = 0;
 
 private:
-    // The file as it was read last; read again where it is another file or was written since.
+    // The file as it was read last; read again where it is another file or was written since. A plan's step
+    // holds the picture whose size it was compiled with, whatever is written meanwhile.
     struct Read {
         std::string name;
         Values values = Values::Auto;
-        std::filesystem::file_time_type time{};
+        std::optional<FileState> state;
         Image image;
     };
     [[nodiscard]] std::shared_ptr<const Read> read() const; // throws InputError

@@ -2,6 +2,7 @@
 #include "image/io.h"
 #include "shipped_fixture.h"
 #include "support/temporary_folder.h"
+#include <chrono>
 #include <gmock/gmock.h>
 #include <limits>
 
@@ -94,6 +95,49 @@ TEST_F(ImageFiles, MistakesAreToldAtCheckTimeWithTheirPlace) {
     const Image wide(20'000, 1, 1);
     writeImage(folder.path() / "wide.exr", wide, Encoding::Linear);
     EXPECT_THAT(mistake("wide.exr"), HasSubstr("20000x1"));
+}
+
+// Another program writes the file while it is in use.
+TEST_F(ImageFiles, AFileThatIsWrittenAnewIsTakenOver) {
+    const std::filesystem::path file = folder.path() / "p.exr";
+    auto write = [&, later = 0](const Image& image) mutable {
+        writeImage(file, image, Encoding::Linear);
+        // The clock of a file system may stand for some milliseconds.
+        std::filesystem::last_write_time(file, std::filesystem::last_write_time(file) +
+                                                   std::chrono::seconds(++later));
+    };
+    const Image first = picture(7, 5, 1), second = picture(1, 35, 1), third = picture(9, 4, 4);
+    Image same(7, 5, 1);
+    write(first);
+    Renderer made = renderer(graphOf("p.exr"), trianglesScene(square()));
+    const auto now = [&] {
+        made.frame();
+        return made.read({"truth", "image"});
+    };
+    EXPECT_EQ(now(), first);
+    EXPECT_FALSE(made.reloadIfChanged());
+    for (const Image& image : {same, second, third}) {
+        write(image);
+        EXPECT_TRUE(made.reloadIfChanged());
+        EXPECT_EQ(now(), image);
+        EXPECT_FALSE(made.reloadIfChanged());
+    }
+    // Half a file is told once, beside the last picture.
+    writeFile(file, "half");
+    EXPECT_THROW(made.reloadIfChanged(), InputError);
+    EXPECT_EQ(now(), third);
+    made.restart();
+    EXPECT_EQ(now(), third);
+    EXPECT_FALSE(made.reloadIfChanged());
+    write(first);
+    EXPECT_TRUE(made.reloadIfChanged());
+    EXPECT_EQ(now(), first);
+    // A graph that was refused for want of its file is none's picture, but its file is looked for.
+    EXPECT_THROW(made.setGraph(graphOf("q.exr")), InputError);
+    EXPECT_FALSE(made.reloadIfChanged());
+    writeImage(folder.path() / "q.exr", same, Encoding::Linear);
+    EXPECT_TRUE(made.reloadIfChanged());
+    EXPECT_EQ(now(), first);
 }
 
 // Another renderer's picture as the reference of ErrorMeasure: the error is that of `compare`; another size

@@ -2,6 +2,7 @@
 #include "apart.h"
 #include "core/json.h"
 #include "edit/camera.h"
+#include "edit/properties.h"
 #include "editor_window_fixture.h"
 #include "execute/commands.h"
 #include <set>
@@ -215,6 +216,31 @@ TEST_F(EditorCapture, ADroppedPictureIsAPassAndAFileIsAReference) {
     EXPECT_EQ(editor_->viewport.a, (PortRef{"image", "image"}));
     EXPECT_EQ(editor_->viewport.image(), readImage(folder_.path() / "truth.exr"));
     look("dropped");
+    // Another program writes it anew; takes it away, and brings it back.
+    const Image shot = readImage(folder_.path() / "truth.exr"), other(5, 3, 1);
+    const auto lookedAt = [&] {
+        person_->wait(40); // twice a second
+        person_->rest();
+        return session_->problems().empty();
+    };
+    writeImage(folder_.path() / "truth.exr", other, Encoding::Linear);
+    EXPECT_TRUE(lookedAt());
+    EXPECT_EQ(editor_->viewport.image(), other);
+    std::filesystem::remove(folder_.path() / "truth.exr");
+    EXPECT_FALSE(lookedAt());
+    writeImage(folder_.path() / "truth.exr", shot, Encoding::Linear);
+    EXPECT_TRUE(lookedAt());
+    EXPECT_EQ(editor_->viewport.image(), shot);
+    // A file that is missing where it is named, and comes.
+    session_->apply("Set", [](Graph& graph) {
+        setProperty(graph, allPasses(), "image", "file", std::string("late.exr"));
+    });
+    EXPECT_FALSE(lookedAt());
+    writeImage(folder_.path() / "late.exr", other, Encoding::Linear);
+    EXPECT_TRUE(lookedAt());
+    EXPECT_EQ(editor_->viewport.image(), other);
+    session_->document.undo();
+    EXPECT_TRUE(lookedAt());
     editor_->viewport.showPort({"mean", "result"});
     person_->rest();
     session_->restart(); // as many frames as the file is of
