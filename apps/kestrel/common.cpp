@@ -126,6 +126,23 @@ std::string scenePath(const GraphArguments& arguments, const Graph& graph) {
     return pathOf(given ? source : (graph.file.parent_path() / source).string());
 }
 
+void requireNoGraph(const GraphArguments& arguments, const std::string& option,
+                    const std::filesystem::path& file) {
+    if (file.empty() || isStream(file) || isStream(arguments.graph)) return;
+    const auto whole = [](const std::filesystem::path& path) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
+    };
+    const std::filesystem::path written = whole(file), graph = whole(graphFile(arguments.graph));
+    if (written == graph)
+        throw InputError(
+            fmt::format("{} {} would be written over GRAPH {}, which is the same file: name another", option,
+                        file.string(), arguments.graph));
+    if (written == whole(arguments.graph))
+        throw InputError(
+            fmt::format("{} {} would from then on be taken for GRAPH {}, which is {}: name another", option,
+                        file.string(), arguments.graph, graph.string()));
+}
+
 PortRef parsePort(const std::string& text) {
     const auto port = parsePortRef(text);
     if (!port) throw InputError(fmt::format("'{}' is not of the form pass.port", text));

@@ -6,6 +6,7 @@
 #include "say.h"
 #include "scene/scene.h"
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,11 @@ Scene openScene(const std::string& source, const SceneOptions& options);
 std::string pathOf(const std::string& file);
 // Of the scene that openScene() opens; "builtin:NAME" as it is.
 std::string scenePath(const GraphArguments& arguments, const Graph& graph);
+
+// Throws InputError naming both where what `option` writes would be GRAPH itself, or would from then on be
+// taken for it: a graph that comes with Kestrel goes by its name only where no file has that name.
+void requireNoGraph(const GraphArguments& arguments, const std::string& option,
+                    const std::filesystem::path& file);
 
 // "pass.port". Throws InputError for anything else.
 PortRef parsePort(const std::string& text);

@@ -47,6 +47,7 @@ public:
             }
         }
         if (!arguments.stats.empty()) requireOwn(arguments.stats);
+        take([&] { requireNoGraph(arguments, "--stats", arguments.stats); });
         if (folder_ && graph.outputs.empty())
             problems_.push_back({Location{graph.file.string()},
                                  "the graph has no outputs, so there is nothing to write: name a port with "

@@ -159,6 +159,7 @@ int stress(const StressArguments& arguments, bool sizeGiven) {
         throw InputError(Location{arguments.graph},
                          "is read once, and each process that runs cases reads the graph: "
                          "give a file");
+    requireNoGraph(arguments, "--json", arguments.json);
     if (!arguments.curve.empty()) return curve(arguments, sizeGiven);
     static_cast<void>(parseSize(arguments.size));
     static_cast<void>(gl::backendFromName(arguments.backend));

@@ -187,6 +187,25 @@ def test_bad_input_is_refused():
         assert "results of another run" in line, line
 
 
+def test_results_are_not_written_over_the_graph():
+    with folder() as here:
+        mine = Path(here, "mine.json")
+        text = Path(RAY_AO).read_text()
+        mine.write_text(text)
+        Path(here, "link.json").symlink_to(mine)
+        for graph, file in [(mine, mine), (mine, f"{here}/../{Path(here).name}/link.json"), ("./mine.json", mine)]:
+            for words in [["stress", graph, "--json", file], ["stress", graph, "--resume", "--json", file],
+                          ["stress", graph, "--curve", "scale", "--page", "p", "--json", file],
+                          ["render", graph, "--stats", file]]:
+                line = refused(*words, folder=here)[0]
+                assert f"{words[-2]} {file} would be written over GRAPH {graph}" in line, line
+        assert mine.read_text() == text
+        # A name that is a shipped graph's as long as no file has it.
+        line = refused("stress", "ray_ao.json", "--json", "ray_ao.json", folder=here)[0]
+        assert "--json ray_ao.json would from then on be taken for GRAPH ray_ao.json, which is /" in line, line
+        assert not Path(here, "ray_ao.json").exists()
+
+
 def test_without_a_device_it_says_so():
     lines = refused("stress", RAY_AO, *BLOB, "--only", "numbers/plain", status=3,
                     env={"__EGL_VENDOR_LIBRARY_FILENAMES": "/nowhere.json"})
