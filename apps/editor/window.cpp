@@ -14,6 +14,7 @@ struct Events {
     KeyEvents* keys;
     std::vector<std::filesystem::path>* dropped;
     int* settle;
+    bool* exposed;
 };
 
 GLFWwindow* handle(const gl::Context& context) { return static_cast<GLFWwindow*>(context.window()); }
@@ -28,7 +29,7 @@ Window::Window(Extent size, Theme& theme) {
     context_ = gl::Context::create({.backend = gl::Backend::Window, .windowSize = size, .title = "Kestrel"});
     GLFWwindow* window = handle(*context_);
     glfwSwapInterval(1);
-    glfwSetWindowUserPointer(window, new Events{&keys_, &dropped_, &settle_});
+    glfwSetWindowUserPointer(window, new Events{&keys_, &dropped_, &settle_, &exposed_});
     // Before ImGui's, which calls them on.
     glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int modifiers) {
         woken(of);
@@ -49,7 +50,10 @@ Window::Window(Extent size, Theme& theme) {
     glfwSetScrollCallback(window, [](GLFWwindow* of, double, double) { woken(of); });
     glfwSetCharCallback(window, [](GLFWwindow* of, unsigned) { woken(of); });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* of, int, int) { woken(of); });
-    glfwSetWindowRefreshCallback(window, woken);
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* of) {
+        woken(of);
+        *static_cast<Events*>(glfwGetWindowUserPointer(of))->exposed = true;
+    });
     glfwSetWindowCloseCallback(window, woken);
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
@@ -63,6 +67,8 @@ Window::Window(Extent size, Theme& theme) {
 
 Window::~Window() {
     context_->makeCurrent();
+    framebuffers_.clear();
+    picture_ = {};
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -76,6 +82,7 @@ void Window::frame(Editor& editor, Theme& theme, const std::function<void(KeyEve
         theme.apply();
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
+        redraw_.forget();
     }
     const auto begin = std::chrono::steady_clock::now();
     ImGui_ImplOpenGL3_NewFrame();
@@ -87,13 +94,62 @@ void Window::frame(Editor& editor, Theme& theme, const std::function<void(KeyEve
     editor.show(keys);
     ImGui::Render();
     ownMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    draw(editor);
+    if (std::string title = editor.title(); title != title_) {
+        title_ = std::move(title);
+        glfwSetWindowTitle(handle(*context_), title_.c_str());
+    }
+}
+
+void Window::draw(Editor& editor) {
     const Extent extent = context_->framebufferExtent();
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    if (extent.width == 0 || extent.height == 0) return redraw_.forget(); // an icon
+    if (!picture_ || picture_.desc().extent != extent) {
+        framebuffers_.clear();
+        picture_ = gl::Texture(Desc::texture2D(Format::RGBA8, extent), "window");
+        redraw_.forget();
+    }
+    const std::vector<PixelBox> boxes = redraw_.changed(*ImGui::GetDrawData(), editor.viewport.takeWritten());
+    for (const PixelBox& box : boxes) drawBox(box);
+    if (!boxes.empty()) shows_ = false;
+}
+
+void Window::drawAgain() {
+    const Extent extent = picture_.desc().extent;
+    drawBox({0, 0, static_cast<int>(extent.width), static_cast<int>(extent.height)});
+}
+
+void Window::drawBox(const PixelBox& box) {
+    const Extent extent = picture_.desc().extent;
+    const int width = box.right - box.left, height = box.bottom - box.top;
+    drawnPixels_ += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    ImDrawData& data = *ImGui::GetDrawData();
+    redraw_.limitTo(data, box);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_.get({gl::Attachment{&picture_}}, {}, extent));
     glViewport(0, 0, static_cast<GLsizei>(extent.width), static_cast<GLsizei>(extent.height));
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(box.left, static_cast<GLint>(extent.height) - box.bottom, width, height);
     glClearColor(0, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    glfwSetWindowTitle(handle(*context_), editor.title().c_str());
+    glDisable(GL_SCISSOR_TEST);
+    ImGui_ImplOpenGL3_RenderDrawData(&data);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+bool Window::present() {
+    if (shows_ && !exposed_) {
+        glfwPollEvents();
+        return glfwWindowShouldClose(handle(*context_)) == GLFW_FALSE;
+    }
+    if (picture_) {
+        const Extent extent = picture_.desc().extent;
+        const auto width = static_cast<GLint>(extent.width), height = static_cast<GLint>(extent.height);
+        glBlitNamedFramebuffer(framebuffers_.get({gl::Attachment{&picture_}}, {}, extent), 0, 0, 0, width,
+                               height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
+    shows_ = true;
+    exposed_ = false;
+    return context_->present();
 }
 
 void Window::turn(Editor& editor, Theme& theme, const std::function<void(KeyEvents&)>& before) {
@@ -105,7 +161,7 @@ void Window::turn(Editor& editor, Theme& theme, const std::function<void(KeyEven
         if (settle_ == 0 && dropped_.empty() && editor.rests()) return;
     }
     frame(editor, theme, before);
-    if (context_->present()) return;
+    if (present()) return;
     glfwSetWindowShouldClose(handle(*context_), GLFW_FALSE);
     editor.askToClose();
     settle_ = 3;
@@ -124,26 +180,6 @@ void Window::resize(Extent size) {
     glfwSetWindowSize(handle(*context_), static_cast<int>(size.width), static_cast<int>(size.height));
 }
 
-Image Window::screenshot() const {
-    const Extent extent = context_->framebufferExtent();
-    const auto width = static_cast<int>(extent.width), height = static_cast<int>(extent.height);
-    std::vector<std::uint8_t> bytes(static_cast<size_t>(width) * static_cast<size_t>(height) * 3);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    Image image(width, height, 3);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            for (int c = 0; c < 3; ++c)
-                image.at(x, y, c) =
-                    static_cast<float>(
-                        bytes[(static_cast<size_t>(height - 1 - y) * static_cast<size_t>(width) +
-                               static_cast<size_t>(x)) *
-                                  3 +
-                              static_cast<size_t>(c)]) /
-                    255.0f;
-    return image;
-}
+Image Window::screenshot() const { return convertChannels(picture_.downloadImage(), 3); }
 
 } // namespace kestrel::edit

@@ -2,6 +2,8 @@
 #pragma once
 #include "editor.h"
 #include "gl/context.h"
+#include "gl/objects.h"
+#include "ui/redraw.h"
 #include <functional>
 #include <memory>
 #include <vector>
@@ -21,10 +23,17 @@ public:
     // Until the editor is done. `before` runs at the beginning of each frame, after the window system's
     // events were taken and before anything is shown: tests play a person there.
     void run(Editor& editor, Theme& theme, const std::function<void(KeyEvents&)>& before = {});
-    // One frame; false: the window is to close.
+    // One frame: of the picture what became another is drawn.
     void frame(Editor& editor, Theme& theme, const std::function<void(KeyEvents&)>& before);
-    // What is on the screen, RGB, rows from the top.
+    // Shows the frame, if it is another than the one on the screen, and takes the window system's events;
+    // false: the window is to close.
+    bool present();
+    // The last frame's picture, RGB, rows from the top.
     [[nodiscard]] Image screenshot() const;
+    // The last frame once more, all of it: the same picture, if what changed was found.
+    void drawAgain();
+    // Pixels of all boxes that were drawn so far.
+    [[nodiscard]] std::uint64_t drawnPixels() const { return drawnPixels_; }
     void resize(Extent size);
     // As run(), for so many seconds.
     void runFor(Editor& editor, Theme& theme, double seconds);
@@ -33,10 +42,19 @@ public:
 
 private:
     void turn(Editor& editor, Theme& theme, const std::function<void(KeyEvents&)>& before);
+    void draw(Editor& editor);
+    void drawBox(const PixelBox& box);
 
     std::unique_ptr<gl::Context> context_;
     KeyEvents keys_;
     std::vector<std::filesystem::path> dropped_;
+    Redraw redraw_;
+    gl::Texture picture_; // what is shown, since a window's own buffer is lost when it is
+    gl::FramebufferCache framebuffers_;
+    std::string title_;
+    bool shows_ = false;   // the picture on the screen is the last frame's
+    bool exposed_ = false; // the window system lost what was on the screen
+    std::uint64_t drawnPixels_ = 0;
     double ownMs_ = 0;
     int settle_ = 3; // frames to draw before it may rest: popups and hovers need a few
 };

@@ -148,7 +148,7 @@ public:
             for (const auto& [name, key] : known) io.AddKeyEvent(key, down_ > 0 && edit::chordOf(name).key == down_);
 #endif
         });
-        EXPECT_TRUE(window_.context().present());
+        EXPECT_TRUE(window_.present());
     }
 
 private:

@@ -55,6 +55,56 @@ TEST_F(EditorLook, Dark) {
     expectAsKept("dark");
 }
 
+// A frame draws what it changes: nothing at rest, little where the pointer moves, and never a picture that is
+// another than one drawn whole.
+TEST_F(EditorLook, OnlyWhatChangesIsDrawn) {
+    const auto whole = [&] {
+        const Image seen = window_->screenshot();
+        window_->drawAgain();
+        return window_->screenshot() == seen;
+    };
+    const auto drawn = [&](const std::function<void()>& done) {
+        const std::uint64_t before = window_->drawnPixels();
+        done();
+        return window_->drawnPixels() - before;
+    };
+    person_->moveTo({-50, -50});
+    person_->rest();
+    person_->wait(3);
+    EXPECT_EQ(drawn([&] { person_->wait(5); }), 0u);
+    EXPECT_TRUE(whole());
+    const Image before = window_->screenshot();
+    const auto all = static_cast<std::uint64_t>(before.width) * static_cast<std::uint64_t>(before.height);
+    // A pass that is chosen: its outline, its wires, its properties.
+    person_->click(person_->box("ao"));
+    person_->wait(3);
+    EXPECT_TRUE(whole());
+    EXPECT_NE(window_->screenshot(), before);
+    // The pointer comes to a slider, which lights up.
+    person_->moveTo({-50, -50});
+    person_->wait(3);
+    const glm::dvec2 slider = editor_->properties().middles.at("distance");
+    const std::uint64_t hovered = drawn([&] { person_->moveTo(slider); });
+    EXPECT_GT(hovered, 0u);
+    EXPECT_LT(hovered, all / 20);
+    EXPECT_TRUE(whole());
+    // The picture becomes another: no more than its panel and the line of the state are drawn.
+    session_->setOwnCamera(*session_->movableCamera());
+    const std::uint64_t seen = drawn([&] { person_->frame(); });
+    EXPECT_GT(seen, 0u);
+    EXPECT_LT(seen, all / 2);
+    EXPECT_TRUE(whole());
+    // A list that opens over all of it, and closes.
+    person_->press("F1");
+    EXPECT_TRUE(whole());
+    person_->press("Esc");
+    person_->wait(3);
+    EXPECT_TRUE(whole());
+    // Another size is drawn whole.
+    EXPECT_GE(drawn([&] { resizeTo({900, 600, 1}); }), std::uint64_t{900} * 600);
+    EXPECT_TRUE(whole());
+}
+
 TEST_F(EditorLook, Light) {
     select("ao");
     person_->press("F8");

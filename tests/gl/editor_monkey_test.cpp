@@ -133,6 +133,10 @@ protected:
             ASSERT_EQ(gl::Context::severeErrors(), 0u);
             ASSERT_FALSE(editor_->done());
             if (i % 50 == 0) {
+                // What was drawn by and by is what is drawn at once.
+                const Image seen = window_->screenshot();
+                window_->drawAgain();
+                ASSERT_EQ(window_->screenshot(), seen);
                 ASSERT_EQ(saveGraph(parseGraph(session_->document.text(), "again")),
                           session_->document.text());
             }

@@ -68,16 +68,21 @@ void Viewport::Picture::follow(Session& session, const PortRef& wantedPort) {
     developed.clear();
 }
 
-void Viewport::Picture::makeTexture(const Development& development) {
+bool Viewport::Picture::makeTexture(const Development& development) {
     const std::string how = fmt::format("{} {} {} {}", static_cast<int>(development.mode),
                                         development.exposure, development.low, development.high);
-    if (image.empty() || how == developed) return;
+    if (image.empty() || how == developed) return false;
     developed = how;
-    const std::vector<std::uint8_t> pixels = develop(image, development);
+    const std::vector<std::uint8_t> pixels = edit::develop(image, development);
     const Extent extent{static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), 1};
     if (!texture || texture.desc().extent != extent)
         texture = gl::Texture(Desc::texture2D(Format::RGBA8, extent), "viewport");
     texture.upload(pixels.data());
+    return true;
+}
+
+void Viewport::develop(Picture& picture, const Development& development) {
+    if (picture.makeTexture(development)) written_.push_back(textureId(picture.texture));
 }
 
 void Viewport::show(Session& session, const std::function<void(const std::string&)>& say) {
@@ -121,8 +126,8 @@ std::string Viewport::error() const {
 }
 
 void Viewport::draw(Session& session) {
-    first_.makeTexture(development);
-    second_.makeTexture(development);
+    develop(first_, development);
+    develop(second_, development);
     if (layout != Layout::One && errorOf_ != session.frames() && first_.image.sameSize(second_.image) &&
         !first_.image.empty()) {
         errorOf_ = session.frames();
@@ -196,7 +201,7 @@ void Viewport::pins(Session& session) {
     for (size_t i = 0; i < pinned.size(); ++i) {
         Picture& pin = pins_[i];
         pin.follow(session, pinned[i]);
-        pin.makeTexture({});
+        develop(pin, {});
         if (i > 0) ImGui::SameLine();
         ImGui::BeginGroup();
         ImGui::TextUnformatted(pinned[i].text().c_str());

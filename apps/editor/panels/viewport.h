@@ -9,6 +9,7 @@
 #include <imgui.h>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kestrel::edit {
@@ -52,6 +53,8 @@ public:
     [[nodiscard]] ImVec2 middle() const { return middle_; }
     // The picture of `a` as it is held, for tests and for saving.
     [[nodiscard]] const Image& image() const { return first_.image; }
+    // Textures that got other content since this was asked last.
+    [[nodiscard]] std::vector<ImTextureID> takeWritten() { return std::exchange(written_, {}); }
 
 private:
     struct Picture {
@@ -63,8 +66,9 @@ private:
         std::string developed;   // how the texture was made
         gl::Texture texture;
         void follow(Session& session, const PortRef& wantedPort);
-        void makeTexture(const Development& development);
+        bool makeTexture(const Development& development); // true: it has other content
     };
+    void develop(Picture& picture, const Development& development);
     void bar();
     void draw(Session& session);
     void drawPicture(Picture& picture, ImVec2 low, ImVec2 high, float from, float to);
@@ -75,6 +79,7 @@ private:
     SceneBar sceneBar_;
     Picture first_, second_;
     std::vector<Picture> pins_;
+    std::vector<ImTextureID> written_;
     std::optional<std::pair<int, int>> pixel_;
     bool held_ = false;      // the pixel was clicked: it stays
     bool heldStill_ = false; // the second picture is one that was kept
