@@ -64,8 +64,9 @@ bool M(step)(inout M(Walk) walk, float tMin, float tMax, bool nearestFirst, out 
 
 #ifdef PROVIDES_TRACER
 
-// What a loop finds is assigned beside its `break`: a CPU driver (llvmpipe, Mesa 22.3.6) goes on computing what a lane
-// that has left would have assigned, and after nested loops gives that.
+// Conditions stand at the ends of loops: at the beginning they cost a pass through the body for nothing, since a driver that
+// masks lanes leaves a loop at its end alone. What a loop finds is assigned beside its `break`: llvmpipe (Mesa 22.3.6) goes on
+// computing what a lane that has left would have assigned, and after nested loops gives that.
 
 #ifdef MATERIAL_MASKED
 // Walks to the next triangle that the ray meets. The alpha test stands outside of this loop: in it, all lanes would pay for
@@ -172,7 +173,7 @@ bool M(closestHit)(Ray ray, out Hit hit) {
     TriangleHit best = TriangleHit(ray.tMax, 0.0, 0.0);
     uint triangle = 0xffffffffu;
     bool found = false;
-    while (walk.size >= 0) {
+    do {
         ITERATION;
         TriangleHit candidate;
 #ifdef MATERIAL_MASKED
@@ -191,7 +192,7 @@ bool M(closestHit)(Ray ray, out Hit hit) {
             triangle = id;
             found = true;
         }
-    }
+    } while (walk.size >= 0);
     hit = Hit(best.t, 0.0, 0u, uvec2(triangle, packUnorm2x16(vec2(best.u, best.v))));
     return found;
 }
@@ -207,7 +208,8 @@ Surface M(surface)(Ray ray, Hit hit) { return sceneSurface(hit.id.x, unpackUnorm
 
 void M(all)(Ray ray) {
     M(Walk) walk = M(start)(ray);
-    while (walk.size >= 0) {
+    bool stopped = false;
+    do {
         ITERATION;
         TriangleHit hit;
         uvec3 ids;
@@ -215,8 +217,8 @@ void M(all)(Ray ray) {
 #ifdef MATERIAL_MASKED
         if (met && ids.z >= 2u) met = sceneCovers(ids.x, vec2(hit.u, hit.v));
 #endif
-        if (met && M(visit)(ray, Hit(hit.t, 0.0, 0u, uvec2(ids.x, packUnorm2x16(vec2(hit.u, hit.v)))))) break;
-    }
+        if (met) stopped = M(visit)(ray, Hit(hit.t, 0.0, 0u, uvec2(ids.x, packUnorm2x16(vec2(hit.u, hit.v)))));
+    } while (!stopped && walk.size >= 0);
 }
 
 #endif // PROVIDES_HITS
