@@ -4,7 +4,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <future>
 #include <limits>
+#include <utility>
 
 namespace kestrel {
 namespace {
@@ -82,15 +84,24 @@ class Widener {
 public:
     explicit Widener(const Bvh& binary)
         : binary_(binary)
-        , below_(binary.nodes.size()) {
-        wide_.items.reserve(binary.triangles.size() + binary.nodes.size() / 2 + 1);
-    }
+        , below_(binary.nodes.size()) {}
 
     WideBvh operator()() {
-        for (std::size_t i = below_.size(); i-- > 0;) weigh(i);
-        wide_.items.emplace_back();
-        node(0, 0, 1);
-        return std::move(wide_);
+        // What lies below the root's second child comes behind what lies below the first.
+        const auto weighed = [this](std::size_t first, std::size_t end) {
+            while (end-- > first) weigh(end);
+        };
+        const std::uint32_t second = binary_.nodes[0].children[1].reference;
+        const std::size_t middle = shared::bvhIsLeaf(second) ? below_.size() : second;
+        auto other = std::async(policy(), weighed, middle, below_.size());
+        weighed(1, middle);
+        other.get();
+        weigh(0);
+        WideBvh wide;
+        wide.items.reserve(binary_.triangles.size() + binary_.nodes.size() / 2 + 1);
+        wide.items.emplace_back();
+        node(wide, 0, 0, 1);
+        return wide;
     }
 
 private:
@@ -157,8 +168,13 @@ private:
         take(parts[1], most - whole.left[most], found, count);
     }
 
-    void node(std::uint32_t from, std::size_t to, int depth) {
-        wide_.depth = std::max(wide_.depth, depth);
+    // A thread costs more than it saves where there is little to do.
+    [[nodiscard]] std::launch policy() const {
+        return binary_.triangles.size() < 8192 ? std::launch::deferred : std::launch::async;
+    }
+
+    void node(WideBvh& wide, std::uint32_t from, std::size_t to, int depth) const {
+        wide.depth = std::max(wide.depth, depth);
         std::array<Found, 4> children;
         std::size_t count = 0;
         const std::size_t left = below_[from].left[0];
@@ -166,18 +182,41 @@ private:
         take(binary_.nodes[from].children[1], 4 - left, children, count);
         // Large triangles first, which are what stops a ray soonest: a fifth fewer visits in a hall, by any
         // hits.
-        std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count),
-                         [](const Found& a, const Found& b) { return a.size > b.size; });
-        const std::size_t first = wide_.items.size();
-        wide_.items.resize(first + count);
-        wide_.items[to] = inner(children, count, static_cast<std::uint32_t>(first));
+        for (std::size_t i = 1; i < count; ++i)
+            for (std::size_t k = i; k > 0 && children[k].size > children[k - 1].size; --k)
+                std::swap(children[k], children[k - 1]);
+        const std::size_t first = wide.items.size();
+        wide.items.resize(first + count);
+        wide.items[to] = inner(children, count, static_cast<std::uint32_t>(first));
+        // Below the root each by itself, whatever the threads, so that the items are always in the same
+        // order.
+        std::array<std::future<WideBvh>, 4> parts;
         for (std::size_t i = 0; i < count; ++i) {
             const std::uint32_t reference = children[i].child.reference;
             if (shared::bvhIsLeaf(reference))
-                wide_.items[first + i] = triangle(binary_.triangles[shared::bvhLeafFirst(reference)]);
+                wide.items[first + i] = triangle(binary_.triangles[shared::bvhLeafFirst(reference)]);
+            else if (depth > 1)
+                node(wide, reference, first + i, depth + 1);
             else
-                node(reference, first + i, depth + 1);
+                parts[i] = std::async(policy(), [this, reference] {
+                    WideBvh part;
+                    part.items.emplace_back();
+                    node(part, reference, 0, 2);
+                    return part;
+                });
         }
+        for (std::size_t i = 0; i < count; ++i)
+            if (parts[i].valid()) append(wide, first + i, parts[i].get());
+    }
+
+    // A part's root goes where room was left for it, what lies below behind all that there is.
+    static void append(WideBvh& wide, std::size_t root, WideBvh part) {
+        const auto shift = static_cast<std::uint32_t>(wide.items.size() - 1) * shared::wideTexels;
+        for (WideItem& item : part.items)
+            if ((item.texels[0].w & shared::wideNode) != 0) item.texels[1].w += shift;
+        wide.items[root] = part.items.front();
+        wide.items.insert(wide.items.end(), part.items.begin() + 1, part.items.end());
+        wide.depth = std::max(wide.depth, part.depth);
     }
 
     static WideItem inner(const std::array<Found, 4>& found, std::size_t count, std::uint32_t first) {
@@ -208,7 +247,6 @@ private:
 
     const Bvh& binary_;
     std::vector<Below> below_;
-    WideBvh wide_;
 };
 
 } // namespace

@@ -370,6 +370,16 @@ TEST(Bvh, ResultDoesNotDependOnThreads) {
     }
 }
 
+// Large enough to be made by several threads.
+TEST(Bvh, AWideTreeOfManyTrianglesIsWhole) {
+    const Geometry g = randomGeometry(30000, 1, 0.02f);
+    expectValidTree(g, buildBvh(g));
+    EXPECT_GT(expectEqualsBruteForce(g, {}, 100), 20);
+    const WideBvh one = buildWide(g), again = buildWide(g);
+    ASSERT_EQ(one.items.size(), again.items.size());
+    EXPECT_EQ(std::memcmp(one.items.data(), again.items.data(), one.items.size() * sizeof(WideItem)), 0);
+}
+
 TEST(Bvh, CarriesMaterialAndClass) {
     Geometry g = randomGeometry(10);
     g.materials = {0, 0, 0, 0, 1, 1, 1, 2, 2, 2};
