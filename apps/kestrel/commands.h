@@ -15,6 +15,7 @@ void addDotCommand(CLI::App& app, Run& run);
 void addCompareCommand(CLI::App& app, Run& run);
 void addSceneCommand(CLI::App& app, Run& run);
 void addSweepCommand(CLI::App& app, Run& run);
+void addTuneCommand(CLI::App& app, Run& run);
 void addStressCommand(CLI::App& app, Run& run);
 
 } // namespace kestrel

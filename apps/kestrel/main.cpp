@@ -148,6 +148,7 @@ int main(int argc, char** argv) {
     addCompareCommand(app, run);
     addSceneCommand(app, run);
     addSweepCommand(app, run);
+    addTuneCommand(app, run);
     addStressCommand(app, run);
     try {
         app.parse(argc, argv);

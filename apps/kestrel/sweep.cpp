@@ -3,13 +3,8 @@
 #include "common.h"
 #include "core/files.h"
 #include "core/log.h"
-#include "core/progress.h"
-#include "core/version.h"
-#include "execute/executor.h"
-#include "gl/context.h"
-#include "gl/timer.h"
-#include "measure/sweep_run.h"
 #include "measure/sweep_schema.h"
+#include "sweep_command.h"
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -17,27 +12,6 @@
 namespace kestrel {
 
 namespace {
-
-struct SweepArguments {
-    std::string file, folder, shard, only, size, markdown, backend = "egl";
-    std::vector<std::string> merge;
-    int frames = 0;
-    bool resume = false, list = false, json = false, schema = false, allowOutside = false;
-};
-
-Sweep openSweep(const SweepArguments& arguments) {
-    Sweep sweep = loadSweep(arguments.file);
-    if (!arguments.size.empty()) {
-        sweep.size = parseSize(arguments.size);
-        sweep.sizeGiven = true;
-    }
-    if (arguments.frames > 0) {
-        sweep.frames = arguments.frames;
-        sweep.framesGiven = true;
-    }
-    sweep.allowOutside = arguments.allowOutside;
-    return sweep;
-}
 
 // What would be measured, and by which shard.
 void printList(const Sweep& sweep, const std::vector<SweepPoint>& points, const std::vector<SweepUnit>& units,
@@ -72,54 +46,6 @@ void printList(const Sweep& sweep, const std::vector<SweepPoint>& points, const 
             units.size());
 }
 
-void printRows(const Sweep& sweep, const SweepResults& results) {
-    for (const SweepRow& row : results.rows) {
-        const std::string name = row.scene + ": " + row.point;
-        if (!row.picture.failed.empty()) {
-            say("{}: failed\n", name);
-            continue;
-        }
-        const auto time = row.ms.find(sweep.plotTime);
-        const auto error = errorOf(row, sweep.plotError);
-        say("{}: {} {:.2f} ms, {} {:.4g}{}\n", name, sweep.plotTime,
-            time == row.ms.end() ? 0.0 : time->second.median,
-            row.ray                     ? "disagreement"
-            : sweep.plotError == "ssim" ? "1-ssim"
-                                        : sweep.plotError,
-            error.value_or(0), row.pareto ? ", on the front" : "");
-    }
-}
-
-// Writes results and page; 1 if a variant failed.
-int finish(const Sweep& sweep, const SweepFolder& folder, const std::vector<SweepPoint>& points,
-           const std::vector<SweepUnit>& units, bool json) {
-    const SweepResults results = folder.gather(points, units);
-    folder.writeResults(results);
-    if (json)
-        fmt::print("{}", resultsJson(sweep, results));
-    else
-        printRows(sweep, results);
-    if (!results.missing.empty())
-        logInfo("{} of the sweep's measurements are not in {} yet", results.missing.size(),
-                folder.path().string());
-    if (!json) say("{}\n", (folder.path() / "index.html").string());
-    bool failed = false;
-    for (const SweepRow& row : results.rows) {
-        if (row.picture.failed.empty()) continue;
-        logError("{}: {}: {}", row.scene, row.point, row.picture.failed);
-        failed = true;
-    }
-    return static_cast<int>(failed ? ExitStatus::MeasureFailed : ExitStatus::Done);
-}
-
-int merge(const Sweep& sweep, const SweepArguments& arguments, const std::vector<SweepPoint>& points,
-          const std::vector<SweepUnit>& units) {
-    const SweepFolder folder(arguments.folder, sweep);
-    folder.begin(false, nullptr);
-    for (const std::string& other : arguments.merge) folder.merge(SweepFolder(other, sweep));
-    return finish(sweep, folder, points, units, arguments.json);
-}
-
 int runSweepCommand(const SweepArguments& arguments) {
     if (arguments.schema) {
         fmt::print("{}", sweepSchema());
@@ -129,9 +55,8 @@ int runSweepCommand(const SweepArguments& arguments) {
         fmt::print("{}", resultsMarkdown(readText(arguments.markdown), arguments.markdown));
         return static_cast<int>(ExitStatus::Done);
     }
-    if (arguments.file.empty()) throw InputError("FILE is missing: the sweep file");
-    const Registry& registry = loadedRegistry();
     const Sweep sweep = openSweep(arguments);
+    const Registry& registry = loadedRegistry();
     const std::vector<SweepPoint> points = expandSweep(sweep);
     const std::vector<SweepUnit> units = sweepUnits(sweep, points);
     SweepOptions options;
@@ -143,58 +68,59 @@ int runSweepCommand(const SweepArguments& arguments) {
         return static_cast<int>(ExitStatus::Done);
     }
     if (arguments.folder.empty()) throw InputError("--out is missing: the folder that the results go into");
-    if (!arguments.merge.empty()) return merge(sweep, arguments, points, units);
-    checkSweepScenes(sweep);
-    if (static_cast<size_t>(options.shard.count) > units.size())
-        logInfo("{} shards, but only {} plots to share out: some have nothing to do", options.shard.count,
-                units.size());
-
-    const auto context = gl::Context::create({.backend = gl::backendFromName(arguments.backend)});
-    const std::string clock(gl::StepClock(context->capabilities()).name());
-    SweepMachine machine = thisMachine(context->capabilities().renderer, context->driver(), clock);
-    machine.version = version() + " " + configuration();
+    if (!arguments.merge.empty()) {
+        mergeSweep(sweep, arguments);
+    } else {
+        checkSweepScenes(sweep);
+        if (static_cast<size_t>(options.shard.count) > units.size())
+            logInfo("{} shards, but only {} plots to share out: some have nothing to do", options.shard.count,
+                    units.size());
+        measureSweep(sweep, arguments, "sweep", options,
+                     [&](gl::Context& context, const SweepMachine& machine, const SweepFolder& folder,
+                         const SweepOptions& shown) {
+                         runSweep(sweep, points, units, registry, context, machine, folder, shown);
+                     });
+    }
     const SweepFolder folder(arguments.folder, sweep);
-    folder.begin(arguments.resume, &machine);
-    ProgressBar progress("sweep");
-    options.progress = [&](double fraction, const std::string& what) { progress.update(fraction, what); };
-    runSweep(sweep, points, units, registry, *context, machine, folder, options);
-    progress.clear();
-    return finish(sweep, folder, points, units, arguments.json);
+    return finishSweep(sweep, folder, folder.gather(points, units), arguments.json);
 }
 
 } // namespace
 
+void addSweepArguments(CLI::App& command, SweepArguments& arguments, const std::string& shards) {
+    command.add_option("FILE", arguments.file,
+                       "Sweep file (.json): scenes, the reference, variants; - is standard input");
+    command
+        .add_option("--out,-o", arguments.folder,
+                    "Folder for results.json, results.csv, results.md, index.html")
+        ->check(notEmpty());
+    command.add_flag("--resume", arguments.resume,
+                     "Go on with what the folder holds; what the sweep has gained since joins it");
+    command.add_option("--shard", arguments.shard, shards);
+    command
+        .add_option("--merge", arguments.merge, "Join the folders of shards into --out, and measure nothing")
+        ->expected(1, 100000);
+    command.add_option("--only", arguments.only,
+                       "Measure only this variant, or this series, or this one point");
+    command.add_flag("--list", arguments.list, "Print what would be measured");
+    command.add_option("--size", arguments.size, "Size of the frame instead of the file's, WIDTHxHEIGHT");
+    command.add_option("--frames,-n", arguments.frames, "Frames before the picture instead of the file's")
+        ->check(CLI::Range(1, 100'000));
+    command.add_flag("--json", arguments.json, "Print the results as JSON");
+    addAllowOutside(command, arguments.allowOutside);
+    command.add_option("--backend", arguments.backend, "egl, osmesa or window")->capture_default_str();
+}
+
 void addSweepCommand(CLI::App& app, Run& run) {
     CLI::App* command = app.add_subcommand("sweep", "Measure error against run time of many variants");
     const auto arguments = std::make_shared<SweepArguments>();
-    command->add_option("FILE", arguments->file,
-                        "Sweep file (.json): scenes, the reference, variants; - is standard input");
-    command->add_flag("--schema", arguments->schema, "Print the JSON schema of sweep files");
-    command
-        ->add_option("--out,-o", arguments->folder,
-                     "Folder for results.json, results.csv, results.md, index.html")
-        ->check(notEmpty());
-    command->add_flag("--resume", arguments->resume,
-                      "Go on with what the folder holds; what the sweep has gained since joins it");
-    command->add_option("--markdown", arguments->markdown,
-                        "Print the tables of this results.json as Markdown, and measure nothing");
-    command->add_option(
-        "--shard", arguments->shard,
+    addSweepArguments(
+        *command, *arguments,
         "I/N: measure every N-th plot only, from the I-th; a plot is a scene with all its variants, "
         "so that times that are compared come from one machine");
-    command
-        ->add_option("--merge", arguments->merge,
-                     "Join the folders of shards into --out, and measure nothing")
-        ->expected(1, 100000);
-    command->add_option("--only", arguments->only,
-                        "Measure only this variant, or this series, or this one point");
-    command->add_flag("--list", arguments->list, "Print what would be measured");
-    command->add_option("--size", arguments->size, "Size of the frame instead of the file's, WIDTHxHEIGHT");
-    command->add_option("--frames,-n", arguments->frames, "Frames before the picture instead of the file's")
-        ->check(CLI::Range(1, 100'000));
-    command->add_flag("--json", arguments->json, "Print the results as JSON");
-    addAllowOutside(*command, arguments->allowOutside);
-    command->add_option("--backend", arguments->backend, "egl, osmesa or window")->capture_default_str();
+    command->add_flag("--schema", arguments->schema, "Print the JSON schema of sweep files");
+    command->add_option("--markdown", arguments->markdown,
+                        "Print the tables of this results.json as Markdown, and measure nothing");
     command->footer("Each finished measurement is kept at once: after any stop, --resume goes on.\n"
                     "Examples:\n"
                     "  kestrel sweep graphs/sweeps/ambient_occlusion.json --out results\n"

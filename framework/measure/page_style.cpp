@@ -82,11 +82,15 @@ table.rows th button:hover { color: var(--accent); }
 table.rows th button:focus-visible { outline: 2px solid var(--accent); outline-offset: -2px; }
 table.rows th[aria-sort=ascending] button::after { content: " \2191"; }
 table.rows th[aria-sort=descending] button::after { content: " \2193"; }
+table.rows th > span { padding: 8px 10px; display: block; }
 table.rows td { text-align: right; padding: 5px 10px; border-bottom: 1px solid var(--grid); white-space: nowrap; }
 table.rows .word { text-align: left; }
 table.rows tbody tr:hover td { background: var(--grid); }
 table.rows tr.best td:first-child { box-shadow: inset 3px 0 var(--accent); }
 table.rows a { color: inherit; text-decoration-color: var(--line); text-underline-offset: 3px; }
+table.ranks { border-collapse: collapse; font-size: 13px; }
+table.ranks td { padding: 2px 14px 2px 0; }
+table.ranks tr:first-child { color: var(--soft); }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(380px, 100%), 1fr)); gap: 16px; }
 .pictures .pair { display: grid; grid-template-columns: 1fr 1fr; gap: 6px; margin: 8px 0; }
 .pictures .pair.one { grid-template-columns: 1fr; }

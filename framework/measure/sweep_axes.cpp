@@ -8,27 +8,11 @@
 namespace kestrel {
 namespace {
 
-// What a scalar says as part of a setting, and as a label.
-std::optional<std::string> axisScalar(const Json& json) {
-    switch (json.kind) {
-    case Json::Kind::Bool:
-        return json.boolean ? "true" : "false";
-    case Json::Kind::Int:
-        return std::to_string(json.integer);
-    case Json::Kind::Float:
-        return numberText(json.number);
-    case Json::Kind::String:
-        return json.text.size() <= maxSweepName ? std::optional(json.text) : std::nullopt;
-    default:
-        return std::nullopt;
-    }
-}
-
 // A scalar goes into the templates; an object says its own settings.
 void readAxisValue(SweepReading& reading, const Json& json, const std::vector<std::string>& templates,
                    SweepAxis& axis) {
     SweepAxisValue value;
-    if (const auto text = axisScalar(json)) {
+    if (const auto text = sweepScalar(json)) {
         value.label = *text;
         for (const std::string& form : templates) {
             std::string setting = form;
@@ -61,7 +45,7 @@ void readExclusion(SweepReading& reading, const Json& json, SweepVariant& varian
     std::map<std::string, std::string> exclusion;
     for (const Json::Member& member : json.members) {
         const SweepAxis* axis = requireSweepAxis(reading, member.value, member.key, variant);
-        const auto label = axisScalar(member.value);
+        const auto label = sweepScalar(member.value);
         if (!label) reading.note(member.value.where, "an axis is excluded at one of its values");
         if (axis == nullptr || !label) continue;
         std::vector<std::string> labels;
@@ -75,6 +59,21 @@ void readExclusion(SweepReading& reading, const Json& json, SweepVariant& varian
 }
 
 } // namespace
+
+std::optional<std::string> sweepScalar(const Json& json) {
+    switch (json.kind) {
+    case Json::Kind::Bool:
+        return json.boolean ? "true" : "false";
+    case Json::Kind::Int:
+        return std::to_string(json.integer);
+    case Json::Kind::Float:
+        return numberText(json.number);
+    case Json::Kind::String:
+        return json.text.size() <= maxSweepName ? std::optional(json.text) : std::nullopt;
+    default:
+        return std::nullopt;
+    }
+}
 
 const SweepAxis* requireSweepAxis(SweepReading& reading, const Json& json, const std::string& wanted,
                                   const SweepVariant& variant) {

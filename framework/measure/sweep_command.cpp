@@ -58,14 +58,14 @@ std::string renderCommand(const Sweep& sweep, const SweepScene& scene, const Swe
 
 std::string timesCommand(const Sweep& sweep, const SweepPoint& point) {
     std::vector<std::string> words{"kestrel",
-                                   "sweep",
+                                   sweep.tuned ? "tune" : "sweep",
                                    fromAnywhere(sweep.file),
                                    "--size",
                                    fmt::format("{}x{}", sweep.size.width, sweep.size.height),
                                    "--frames",
                                    std::to_string(sweep.frames),
                                    "--only",
-                                   point.name};
+                                   point.tunedOf.empty() ? point.name : point.tunedOf};
     if (sweep.allowOutside) words.push_back("--allow-outside");
     words.insert(words.end(), {"--out", "again"});
     return joined(words);
@@ -77,7 +77,7 @@ std::string sweepCommand(const Sweep& sweep) {
     const fs::path file = fs::weakly_canonical(sweep.file, failure);
     const fs::path within = file.lexically_relative(shipped);
     const bool ours = !within.empty() && *within.begin() != "..";
-    std::vector<std::string> words{"kestrel", "sweep",
+    std::vector<std::string> words{"kestrel", sweep.tuned ? "tune" : "sweep",
                                    ours ? ("graphs" / within).generic_string() : sweep.file.string()};
     if (sweep.sizeGiven)
         words.insert(words.end(), {"--size", fmt::format("{}x{}", sweep.size.width, sweep.size.height)});

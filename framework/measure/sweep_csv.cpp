@@ -39,9 +39,26 @@ std::vector<std::string> csvHeader(const CsvColumns& columns) {
     header.insert(header.end(), {"machine", "repeat_count"});
     for (const std::string& time : columns.times)
         for (const char* which : {"", " q1", " q3"}) header.push_back("ms " + time + which);
-    header.insert(header.end(), {"memory_transient", "memory_persistent", "compile_ms", "set_up_ms",
-                                 "left_out_count", "mse", "psnr", "ssim", "flip", "reference_noise", "rays",
-                                 "hit_share", "agreement", "distance_error"});
+    header.insert(header.end(), {"memory_transient",
+                                 "memory_persistent",
+                                 "compile_ms",
+                                 "set_up_ms",
+                                 "left_out_count",
+                                 "mse",
+                                 "psnr",
+                                 "ssim",
+                                 "flip",
+                                 "reference_noise",
+                                 "rays",
+                                 "hit_share",
+                                 "agreement",
+                                 "distance_error",
+                                 "split mse",
+                                 "split representation",
+                                 "split algorithm",
+                                 "split cross",
+                                 "split sampling",
+                                 "split reference_noise"});
     for (const std::string& report : columns.reports) header.push_back("report " + report);
     header.insert(header.end(), {"pareto", "failed", "command"});
     return header;
@@ -76,6 +93,9 @@ std::vector<std::string> csvFields(const SweepRow& row, const CsvColumns& column
                    error(&SweepErrors::flip), csvNumber(row.referenceNoise), ray(&SweepRayFigures::rays),
                    ray(&SweepRayFigures::hitShare), ray(&SweepRayFigures::agreement),
                    csvNumber(picture.rays ? picture.rays->distanceError : std::nullopt)});
+    for (double ErrorSplit::*part : {&ErrorSplit::mse, &ErrorSplit::representation, &ErrorSplit::algorithm,
+                                     &ErrorSplit::cross, &ErrorSplit::sampling, &ErrorSplit::referenceNoise})
+        fields.push_back(picture.split ? numberText((*picture.split).*part) : "");
     for (const std::string& report : columns.reports) {
         const auto found = picture.reports.find(report);
         fields.push_back(found == picture.reports.end() ? "" : numberText(found->second));

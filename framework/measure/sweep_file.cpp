@@ -51,6 +51,11 @@ void readVariant(SweepReading& reading, const Json& json) {
         requireSweepAxis(reading, *along, variant.along, variant);
     else if (!variant.axes.empty())
         variant.along = variant.axes.front().name;
+    if (const Json* free = json.find("tune"); free != nullptr && !reading.sweep.tuning)
+        reading.note(free->where,
+                     "a variant with 'tune' needs the sweep's 'tune': which scenes it is tuned on");
+    if (const Json* exact = json.find("exact"); exact != nullptr && variant.ray)
+        reading.note(exact->where, "only the error of a picture is taken apart, not that of 'hits'");
     if (const Json* frames = json.find("frames")) {
         if (variant.ray)
             reading.note(frames->where,
@@ -91,6 +96,13 @@ std::optional<int> readSweepWhole(SweepReading& reading, const Json& json, const
     if (json.isWhole() && json.integer >= minimum && json.integer <= maximum)
         return static_cast<int>(json.integer);
     reading.note(json.where, fmt::format("'{}' must be a whole number from {} to {}", key, minimum, maximum));
+    return std::nullopt;
+}
+
+std::optional<double> readSweepNumber(SweepReading& reading, const Json& json, const std::string& key,
+                                      double minimum, double maximum) {
+    if (json.isNumber() && json.number >= minimum && json.number <= maximum) return json.number;
+    reading.note(json.where, fmt::format("'{}' must be a number from {} to {}", key, minimum, maximum));
     return std::nullopt;
 }
 

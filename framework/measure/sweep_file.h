@@ -14,7 +14,7 @@ namespace kestrel {
 inline constexpr size_t maxSweepPoints = 10'000; // also of variants and of an axis's values
 inline constexpr size_t maxSweepTried = 100'000; // combinations of axes, those that are excluded too
 inline constexpr size_t maxSweepScenes = 1'000, maxSweepAxes = 64, maxSweepExclusions = 1'000,
-                        maxSweepSettings = 1'000, maxSweepTimes = 1'000;
+                        maxSweepSettings = 1'000, maxSweepTimes = 1'000, maxSweepFree = 64;
 inline constexpr size_t maxSweepName = 200;               // bytes: names become keys, labels and file names
 inline constexpr size_t maxSweepSetting = 1'000;          // bytes of one setting
 inline constexpr size_t maxSweepText = size_t{256} << 20; // bytes of all points' settings and names
@@ -69,6 +69,15 @@ struct SweepAxis {
     std::vector<SweepAxisValue> values;
 };
 
+// A property that `kestrel tune` may set: to any number of a range, or to one of several values.
+struct SweepFree {
+    std::string name;                  // "pass.property"
+    double low = 0, high = 0;          // of a range, both included
+    bool logarithmic = false;          // steps of the range are equal ratios
+    std::vector<SweepSetting> choices; // texts of values; empty: a range
+    Location where;
+};
+
 struct SweepVariant {
     std::string name, graph, comment;
     bool ray = false; // `output` is a buffer of hits (RayQuery), else a picture
@@ -76,6 +85,10 @@ struct SweepVariant {
     std::vector<SweepSetting> settings;
     std::vector<SweepAxis> axes;                             // they multiply
     std::vector<std::map<std::string, std::string>> exclude; // axis -> label; all must agree
+    std::vector<SweepFree> free;                             // what `kestrel tune` finds the best values of
+    // Settings under which the graph traces the same map or field exactly, after all others: the error is
+    // then taken apart (image/error_split.h).
+    std::vector<SweepSetting> exact;
     std::string series; // points of one series are joined; "{axis}" stands for the axis's label
     std::string along;  // the axis along which they are joined
     std::string plot;   // which plot of the scene; empty: the only one
@@ -93,11 +106,23 @@ struct SweepTime {
     std::vector<Term> terms;
 };
 
+// How `kestrel tune` finds the best values of free properties, and on which scenes.
+struct SweepTuning {
+    std::vector<std::string> train;   // names of scenes: the mean error over these is made small
+    std::vector<std::string> holdOut; // that take no part in it, so that default and tuned are judged fairly
+    int steps = 10, rounds = 3, probes = 8; // see TuneEffort
+    // The time (the plot's, summed over the training scenes) of what is found is at most so many times that
+    // of the default; with `mostMs` its mean over the training scenes is at most that instead.
+    double mostTime = 1.05;
+    std::optional<double> mostMs;
+};
+
 struct Sweep {
     std::string name, title, comment; // name: the file's without its ending
     std::filesystem::path file;
     bool sizeGiven = false, framesGiven = false; // on the command line, instead of the file's
     bool allowOutside = false; // SceneOptions::allowOutside, for all scenes; the command line's
+    bool tuned = false;        // `kestrel tune` runs it: the results rest on `tuning` and what is free, too
     Extent size{640, 360, 1};
     int frames = 16;     // after which the picture is taken
     int warmUp = 1;      // frames that are not timed, each time a variant is timed
@@ -112,6 +137,7 @@ struct Sweep {
     std::vector<SweepScene> scenes;
     std::optional<SweepReference> reference;
     std::optional<SweepRays> rays;
+    std::optional<SweepTuning> tuning;
     std::vector<SweepVariant> variants;
 };
 
@@ -131,12 +157,18 @@ struct SweepPoint {
     PortRef output;
     std::vector<SweepSetting> settings;                    // the variant's, then each axis's
     std::vector<std::pair<std::string, std::string>> axes; // name, label
+    std::vector<SweepFree> free;
+    std::vector<SweepSetting> exact;
+    std::string tunedOf; // the point that this one is, tuned; empty: as the file has it
     int frames = 1;
     Location where;
 };
 
 // The name as any file system takes it ([a-z0-9_.-]), made unique among `taken`, which it joins.
 std::string sweepSlug(const std::string& name, std::set<std::string>& taken);
+
+// The point with its settings for exact tracing.
+SweepPoint exactOf(const SweepPoint& point);
 
 // In the order of the file; the last axis changes fastest. Throws InputError where a sweep has more than
 // maxSweepPoints, maxSweepTried or maxSweepText, or where two points would have one name.

@@ -185,6 +185,7 @@ SweepResults SweepFolder::gather(const std::vector<SweepPoint>& points,
             row.along = point.along;
             row.plot = point.plot;
             row.axes = point.axes;
+            row.tunedOf = point.tunedOf;
             row.ray = point.ray;
             row.picture = std::move(*held);
             if (const auto found = results.references.find(scene.name);

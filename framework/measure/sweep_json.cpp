@@ -67,6 +67,15 @@ RowJson rowJson(const SweepRow& row) {
         {"command", row.command},
         {"times_command", row.timesCommand},
     };
+    if (picture.split)
+        json["split"] = {{"mse", picture.split->mse},
+                         {"representation", picture.split->representation},
+                         {"algorithm", picture.split->algorithm},
+                         {"cross", picture.split->cross},
+                         {"sampling", picture.split->sampling},
+                         {"reference_noise", picture.split->referenceNoise},
+                         {"sum", picture.split->sum()}};
+    if (!row.tunedOf.empty()) json["tuned_of"] = row.tunedOf;
     if (picture.rays) {
         const SweepRayFigures& rays = *picture.rays;
         const auto tracing = row.ms.find("tracing");
@@ -106,6 +115,50 @@ RowJson machinesJson(const SweepResults& results) {
     return machines;
 }
 
+// What `kestrel tune` found.
+RowJson tuneJson(const Sweep& sweep, const TuneReport& report) {
+    const SweepTuning& tuning = *sweep.tuning;
+    RowJson points = RowJson::array(), ranks = RowJson::array();
+    for (const TuneReport::Point& point : report.points) {
+        const TuneOutcome& outcome = point.outcome;
+        RowJson path = RowJson::array();
+        for (const TuneOutcome::Step& step : outcome.path)
+            path.push_back(
+                {{"round", step.round}, {"along", step.along}, {"set", step.set}, {"error", step.error}});
+        points.push_back({{"variant", point.name},
+                          {"start", outcome.start},
+                          {"set", outcome.set},
+                          {"start_error", outcome.startError},
+                          {"error", outcome.error},
+                          {"held_out_start_error", optionalNumber(point.heldOutDefault)},
+                          {"held_out_error", optionalNumber(point.heldOutTuned)},
+                          {"time_ratio", outcome.timeRatio},
+                          {"asked", outcome.asked},
+                          {"too_slow", outcome.tooSlow},
+                          {"path", path}});
+    }
+    for (const TuneReport::Ranks& plot : report.ranks)
+        ranks.push_back({{"scene", plot.scene},
+                         {"plot", plot.plot},
+                         {"trained", plot.trained},
+                         {"held_out", plot.heldOut},
+                         {"default", plot.byDefault},
+                         {"tuned", plot.byTuned},
+                         {"changed", plot.changed()}});
+    return {{"train", tuning.train},
+            {"hold_out", tuning.holdOut},
+            {"steps", tuning.steps},
+            {"rounds", tuning.rounds},
+            {"probes", tuning.probes},
+            {"most_time", tuning.mostMs ? RowJson(nullptr) : RowJson(tuning.mostTime)},
+            {"most_ms", optionalNumber(tuning.mostMs)},
+            {"points", points},
+            {"ranks", ranks},
+            {"defaults_within_5_percent", report.within(0.05)},
+            {"held_out_plots", report.heldOut()},
+            {"held_out_plots_changed", report.heldOutChanged()}};
+}
+
 RowJson documentJson(const Sweep& sweep, const SweepResults& results) {
     RowJson scenes = RowJson::array(), rows = RowJson::array(), times = RowJson::array();
     for (const SweepScene& scene : sweep.scenes) {
@@ -121,30 +174,32 @@ RowJson documentJson(const Sweep& sweep, const SweepResults& results) {
     }
     for (const SweepRow& row : results.rows) rows.push_back(rowJson(row));
     for (const SweepTime& time : sweep.times) times.push_back(time.name);
-    return {{"kestrel_sweep_results", 1},
-            {"name", sweep.name},
-            {"title", sweep.title},
-            {"comment", sweep.comment},
-            {"file", sweep.file.filename().string()},
-            {"command", sweepCommand(sweep)},
-            {"hash", results.hash},
-            {"version", version()},
-            {"configuration", configuration()},
-            {"size", {sweep.size.width, sweep.size.height}},
-            {"frames", sweep.frames},
-            {"seed", sweep.seed},
-            {"warm_up", sweep.warmUp},
-            {"repeats", sweep.repeats},
-            {"timed_frames", sweep.timedFrames},
-            {"moving", sweep.moving},
-            {"rebuild", sweep.rebuild},
-            {"hdr", sweep.hdr},
-            {"plot", {{"time", sweep.plotTime}, {"error", sweep.plotError}}},
-            {"times", times},
-            {"machines", machinesJson(results)},
-            {"scenes", scenes},
-            {"rows", rows},
-            {"missing", results.missing}};
+    RowJson document = {{"kestrel_sweep_results", 1},
+                        {"name", sweep.name},
+                        {"title", sweep.title},
+                        {"comment", sweep.comment},
+                        {"file", sweep.file.filename().string()},
+                        {"command", sweepCommand(sweep)},
+                        {"hash", results.hash},
+                        {"version", version()},
+                        {"configuration", configuration()},
+                        {"size", {sweep.size.width, sweep.size.height}},
+                        {"frames", sweep.frames},
+                        {"seed", sweep.seed},
+                        {"warm_up", sweep.warmUp},
+                        {"repeats", sweep.repeats},
+                        {"timed_frames", sweep.timedFrames},
+                        {"moving", sweep.moving},
+                        {"rebuild", sweep.rebuild},
+                        {"hdr", sweep.hdr},
+                        {"plot", {{"time", sweep.plotTime}, {"error", sweep.plotError}}},
+                        {"times", times},
+                        {"machines", machinesJson(results)},
+                        {"scenes", scenes},
+                        {"rows", rows},
+                        {"missing", results.missing}};
+    if (results.tuning) document["tuning"] = tuneJson(sweep, *results.tuning);
+    return document;
 }
 
 } // namespace

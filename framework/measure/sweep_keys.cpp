@@ -50,6 +50,36 @@ SchemaJson valuesSchema() {
     return listOf({{"anyOf", {{{"$ref", "#/$defs/scalar"}}, sweepAxisValueKeys().schema()}}}, 1);
 }
 
+SchemaJson exactSchema() {
+    return {{"$ref", "#/$defs/settings"},
+            {"description",
+             "With these, after all others, the graph traces the same map or field exactly: the "
+             "mean squared error is taken apart"}};
+}
+
+SchemaJson rangeSchema() {
+    SchemaJson json = listOf({{"type", "number"}}, 2);
+    json["maxItems"] = 2;
+    json["description"] = "From the first to the second";
+    return json;
+}
+
+SchemaJson freeSchema() {
+    SchemaJson choices = listOf({{"$ref", "#/$defs/scalar"}}, 2);
+    choices["description"] = "Two numbers are a range, anything else is a list of choices";
+    SchemaJson json = mapOf({{"anyOf", {std::move(choices), sweepFreeKeys().schema()}}});
+    json["propertyNames"] = {{"$ref", "#/$defs/port"}};
+    json["minProperties"] = 1;
+    json["description"] = "Properties that 'kestrel tune' finds the best values of";
+    return json;
+}
+
+SchemaJson sceneNamesSchema(const char* description) {
+    SchemaJson json = listOf({{"type", "string"}});
+    json["description"] = description;
+    return json;
+}
+
 SchemaJson templatesSchema() {
     SchemaJson json = listOf({{"type", "string"}, {"pattern", "\\{\\}"}});
     json["description"] = "Settings with {} for the value";
@@ -129,6 +159,42 @@ const SweepKeys<SweepAxisForm>& sweepAxisKeys() {
     return keys;
 }
 
+const SweepKeys<SweepFreeForm>& sweepFreeKeys() {
+    static const auto keys =
+        SweepKeys<SweepFreeForm>()
+            .custom("range", Json::Kind::Array, rangeSchema(),
+                    [](SweepReading&, const Json& json, SweepFreeForm& form) { form.range = &json; })
+            .custom("choices", Json::Kind::Array, listOf({{"$ref", "#/$defs/scalar"}}, 1),
+                    [](SweepReading&, const Json& json, SweepFreeForm& form) { form.choices = &json; })
+            .flag("logarithmic", &SweepFreeForm::logarithmic, "Steps of the range are equal ratios");
+    return keys;
+}
+
+const SweepKeys<SweepTuning>& sweepTuningKeys() {
+    const auto names = [](std::vector<std::string> SweepTuning::*member) {
+        return [member](SweepReading& reading, const Json& json, SweepTuning& into) {
+            into.*member = readSweepSceneNames(reading, json);
+        };
+    };
+    static const auto keys =
+        SweepKeys<SweepTuning>()
+            .custom("train", Json::Kind::Array,
+                    sceneNamesSchema("Names of scenes over which the mean error is made small"),
+                    names(&SweepTuning::train))
+            .required()
+            .custom("hold_out", Json::Kind::Array,
+                    sceneNamesSchema("Names of scenes that only judge; all others where it is absent"),
+                    names(&SweepTuning::holdOut))
+            .whole("steps", &SweepTuning::steps, 3, 1000, "Values of a range that each round tries")
+            .whole("rounds", &SweepTuning::rounds, 1, 100, "Each over narrower ranges")
+            .whole("probes", &SweepTuning::probes, 0, 100'000, "Settings of the whole space tried first")
+            .number("time", &SweepTuning::mostTime, 0.01, 1e6,
+                    "The time of what is found is at most so many times the default's")
+            .number("ms", &SweepTuning::mostMs, 0, 1e9,
+                    "Instead of 'time': its mean over the scenes of 'train' is at most so many milliseconds");
+    return keys;
+}
+
 const SweepKeys<SweepVariant>& sweepVariantKeys() {
     static const auto keys =
         SweepKeys<SweepVariant>()
@@ -142,6 +208,11 @@ const SweepKeys<SweepVariant>& sweepVariantKeys() {
             .settings(&SweepVariant::settings)
             .custom("axes", Json::Kind::Object, mapOf({{"$ref", "#/$defs/axis"}}), readSweepAxes)
             .custom("exclude", Json::Kind::Array, exclusionSchema(), readSweepExclusions)
+            .custom("tune", Json::Kind::Object, freeSchema(), readSweepFree)
+            .custom("exact", Json::Kind::Array, exactSchema(),
+                    [](SweepReading& reading, const Json& json, SweepVariant& into) {
+                        into.exact = readSweepSettings(reading, json);
+                    })
             .text("series", &SweepVariant::series, "Points of one are joined; {axis} stands for its label")
             .text("along", &SweepVariant::along, "The axis along which they are joined")
             .label("plot", &SweepVariant::plot, "plot of a variant", "Which plot of the scene")
@@ -197,7 +268,8 @@ const SweepKeys<Sweep>& sweepKeys() {
                         sweep.rays.emplace().where = json.where;
                         sweepRaysKeys().read(reading, json, "'rays'", *sweep.rays);
                     })
-            // Last: variants are held against the reference and the rays.
+            .custom("tune", Kind::Object, sweepTuningKeys().schema(), readSweepTuning)
+            // Last: variants are held against the reference and the rays, and are tuned on scenes.
             .custom("variants", Kind::Array, listOf({{"$ref", "#/$defs/variant"}}, 1), readSweepVariants)
             .required();
     return keys;

@@ -34,6 +34,8 @@ std::string readSweepText(SweepReading& reading, const Json& json);
 std::string readSweepName(SweepReading& reading, const Json& json, const std::string& what);
 std::optional<int> readSweepWhole(SweepReading& reading, const Json& json, const std::string& key,
                                   int minimum, int maximum);
+std::optional<double> readSweepNumber(SweepReading& reading, const Json& json, const std::string& key,
+                                      double minimum, double maximum);
 std::optional<PortRef> readSweepPort(SweepReading& reading, const Json& json, const std::string& key);
 std::vector<SweepSetting> readSweepSettings(SweepReading& reading, const Json& json);
 
@@ -84,6 +86,19 @@ public:
                       [=](SweepReading& reading, const Json& json, T& into) {
                           if (const auto value = readSweepWhole(reading, json, name, minimum, maximum))
                               into.*member = static_cast<Number>(*value);
+                      });
+    }
+    // Any number; a default where the member has one.
+    template<class Number>
+    SweepKeys& number(const std::string& name, Number T::*member, double minimum, double maximum,
+                      const std::string& description) {
+        SchemaJson schema = {
+            {"type", "number"}, {"minimum", minimum}, {"maximum", maximum}, {"description", description}};
+        if constexpr (std::is_arithmetic_v<Number>) schema["default"] = T().*member;
+        return custom(name, std::nullopt, std::move(schema),
+                      [=](SweepReading& reading, const Json& json, T& into) {
+                          if (const auto value = readSweepNumber(reading, json, name, minimum, maximum))
+                              into.*member = *value;
                       });
     }
     // One of several texts.
@@ -165,6 +180,13 @@ struct SweepAxisForm {
     const Json* values = nullptr;
 };
 
+// A free property in its long form: {"range": [low, high], "logarithmic": true} or {"choices": [...]}.
+struct SweepFreeForm {
+    const Json* range = nullptr;
+    const Json* choices = nullptr;
+    bool logarithmic = false;
+};
+
 const SweepKeys<Sweep>& sweepKeys();
 const SweepKeys<Sweep>& sweepPlotKeys();
 const SweepKeys<SweepScene>& sweepSceneKeys();
@@ -173,14 +195,21 @@ const SweepKeys<SweepRays>& sweepRaysKeys();
 const SweepKeys<SweepVariant>& sweepVariantKeys();
 const SweepKeys<SweepAxisForm>& sweepAxisKeys();
 const SweepKeys<SweepAxisValue>& sweepAxisValueKeys();
+const SweepKeys<SweepFreeForm>& sweepFreeKeys();
+const SweepKeys<SweepTuning>& sweepTuningKeys();
 
-// Readers of what is more than one value (sweep_file.cpp, sweep_axes.cpp).
+// Readers of what is more than one value (sweep_file.cpp, sweep_axes.cpp, sweep_free.cpp).
 void readSweepSize(SweepReading& reading, const Json& json, Sweep& sweep);
 void readSweepTimes(SweepReading& reading, const Json& json, Sweep& sweep);
 void readSweepScenes(SweepReading& reading, const Json& json, Sweep& sweep);
 void readSweepVariants(SweepReading& reading, const Json& json, Sweep& sweep);
 void readSweepAxes(SweepReading& reading, const Json& json, SweepVariant& variant);
 void readSweepExclusions(SweepReading& reading, const Json& json, SweepVariant& variant);
+void readSweepFree(SweepReading& reading, const Json& json, SweepVariant& variant);
+std::vector<std::string> readSweepSceneNames(SweepReading& reading, const Json& json);
+void readSweepTuning(SweepReading& reading, const Json& json, Sweep& sweep);
+// What a scalar says as part of a setting, and as a label; nothing for what is none, or too long.
+std::optional<std::string> sweepScalar(const Json& json);
 // The axis of that name; notes the near name where there is none.
 const SweepAxis* requireSweepAxis(SweepReading& reading, const Json& json, const std::string& wanted,
                                   const SweepVariant& variant);

@@ -198,14 +198,38 @@ SweepManifest::SweepManifest(const Sweep& sweep, std::string machine)
                           {"output", point.output.text()},
                           {"files", filesNamed(sweep, sweepGraphFile(sweep, point.graph), point.settings)},
                           {"set", settingTexts(point.settings)}};
+        facts["exact"] = settingTexts(point.exact);
         // A variant's own number of frames; the sweep's and the rays' stand there.
         const bool own = !point.ray && point.frames != sweep.frames;
         facts["frames"] = own ? FactJson(point.frames) : FactJson(nullptr);
         facts_["variant"][point.slug] = std::move(facts);
     }
+    if (sweep.tuned) addTuning(sweep, points);
     for (const SweepUnit& unit : sweepUnits(sweep, points)) {
         const std::string& scene = sweep.scenes[static_cast<size_t>(unit.scene)].name;
         facts_["plot"][unit.slug] = {{"name", unit.plot.empty() ? scene : scene + ": " + unit.plot}};
+    }
+}
+
+// Where the search goes depends on all of this.
+void SweepManifest::addTuning(const Sweep& sweep, const std::vector<SweepPoint>& points) {
+    const SweepTuning& tuning = sweep.tuning.value();
+    facts_["tuning"]["all"] = {{"train", tuning.train},
+                               {"steps", tuning.steps},
+                               {"rounds", tuning.rounds},
+                               {"probes", tuning.probes},
+                               {"time", tuning.mostMs ? FactJson(nullptr) : FactJson(tuning.mostTime)},
+                               {"ms", tuning.mostMs ? FactJson(*tuning.mostMs) : FactJson(nullptr)},
+                               {"plot.time", sweep.plotTime},
+                               {"plot.error", sweep.plotError}};
+    for (const SweepPoint& point : points) {
+        if (point.free.empty()) continue;
+        FactJson free = FactJson::object();
+        for (const SweepFree& property : point.free)
+            free[property.name] = property.choices.empty()
+                                      ? FactJson{property.low, property.high, property.logarithmic}
+                                      : settingTexts(property.choices);
+        facts_["free properties"][point.slug] = {{"name", point.name}, {"tune", std::move(free)}};
     }
 }
 

@@ -5,9 +5,10 @@
 
 namespace kestrel {
 
-// Graphs, scenes and the files that either names (buffers, images, paths of cameras, pictures of the
-// surroundings) count by their content, wherever they lie; what only names or shows a result (titles,
-// times, series) and how often it is repeated do not count.
+// What is free and how it is tuned counts where `kestrel tune` runs it. Graphs, scenes and the files that
+// either names (buffers, images, paths of cameras, pictures of the surroundings) count by their content,
+// wherever they lie; what only names or shows a result (titles, times, series) and how often it is repeated
+// do not count.
 class SweepManifest {
 public:
     // Of a sweep as it is. The content of a scene whose file is not here is not known.
@@ -28,6 +29,7 @@ public:
 
 private:
     SweepManifest() = default;
+    void addTuning(const Sweep& sweep, const std::vector<SweepPoint>& points);
     std::string machine_;
     nlohmann::json facts_; // kind -> what -> key -> value
 };

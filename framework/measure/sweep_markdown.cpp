@@ -22,10 +22,6 @@ std::string threeDigits(double value) {
     return fmt::format("{:.{}f}", value, std::clamp(3 - before, 0, 9));
 }
 
-std::string threeDigits(const TableJson& value) {
-    return value.is_number() ? threeDigits(value.get<double>()) : "-";
-}
-
 // Text that Markdown takes for nothing else, on one line.
 std::string plainText(const std::string& text) {
     std::string result;
@@ -38,6 +34,10 @@ std::string plainText(const std::string& text) {
             result += c;
     }
     return result;
+}
+
+std::string digitsOf(const TableJson& value) {
+    return value.is_number() ? threeDigits(value.get<double>()) : "-";
 }
 
 std::string bytesText(double bytes) { return threeDigits(bytes / (1 << 20)); }
@@ -63,7 +63,7 @@ std::vector<Column> columnsOf(const TableJson& document, const std::vector<const
         if (std::ranges::find(times, time) == times.end()) times.emplace_back(time);
     for (const std::string& time : times)
         columns.push_back({plainText(time) + ", ms", [time](const TableJson& row) {
-                               return threeDigits(row.at("ms").value(time, TableJson()));
+                               return digitsOf(row.at("ms").value(time, TableJson()));
                            }});
     columns.push_back({"half quartile distance", [time = times.front()](const TableJson& row) {
                            const TableJson low = row.at("ms_q1").value(time, TableJson()),
@@ -71,11 +71,19 @@ std::vector<Column> columnsOf(const TableJson& document, const std::vector<const
                            if (!low.is_number() || !high.is_number()) return std::string("-");
                            return threeDigits((high.get<double>() - low.get<double>()) / 2);
                        }});
-    columns.push_back({"FLIP", [](const TableJson& row) { return threeDigits(row.at("flip")); }});
+    columns.push_back({"FLIP", [](const TableJson& row) { return digitsOf(row.at("flip")); }});
     columns.push_back({"RMSE", [](const TableJson& row) {
                            const TableJson& mse = row.at("mse");
                            return mse.is_number() ? threeDigits(std::sqrt(mse.get<double>())) : "-";
                        }});
+    for (const auto& [title, key] : {std::pair{"MSE of the representation", "representation"},
+                                     {"of the algorithm", "algorithm"},
+                                     {"of both together", "cross"},
+                                     {"of its noise", "sampling"},
+                                     {"of the reference's noise", "reference_noise"}})
+        columns.push_back({title, [key](const TableJson& row) {
+                               return row.contains("split") ? digitsOf(row["split"].at(key)) : "-";
+                           }});
     columns.push_back({"rays that agree, %", [](const TableJson& row) {
                            if (!row.contains("rays")) return std::string("-");
                            return fmt::format("{:.2f}", 100 * row["rays"].at("agreement").get<double>());
@@ -108,8 +116,8 @@ std::string tableText(const TableJson& document, const std::vector<const TableJs
 }
 
 std::string spinText(const TableJson& spin) {
-    return fmt::format("{} ms ({} to {})", threeDigits(spin.at("median")), threeDigits(spin.at("min")),
-                       threeDigits(spin.at("max")));
+    return fmt::format("{} ms ({} to {})", digitsOf(spin.at("median")), digitsOf(spin.at("min")),
+                       digitsOf(spin.at("max")));
 }
 
 std::string machineText(const TableJson& machine) {
@@ -123,6 +131,42 @@ std::string machineText(const TableJson& machine) {
         plainText(machine.at("driver").get<std::string>()), plainText(machine.at("clock").get<std::string>()),
         machine.at("version").get<std::string>(), spinText(spin.at("one_thread_ms")),
         spinText(spin.at("two_threads_ms")));
+}
+
+// What differs from the default.
+std::string foundText(const TableJson& point) {
+    std::string text;
+    for (size_t i = 0; i < point.at("set").size(); ++i)
+        if (point.at("set")[i] != point.at("start").at(i))
+            text += (text.empty() ? "" : ", ") + plainText(point.at("set")[i].get<std::string>());
+    return text.empty() ? "the default" : text;
+}
+
+std::string listText(const TableJson& names) {
+    std::string text;
+    for (const TableJson& name : names)
+        text += (text.empty() ? "" : ", ") + plainText(name.get<std::string>());
+    return text;
+}
+
+// What `kestrel tune` found, and whether ranks change.
+std::string tuneMarkdown(const TableJson& tuning) {
+    std::string text = fmt::format(
+        "\n### Tuned\n\nOn {}; held out: {}. {} of {} defaults are within 5 % of their tuned error. Tuning "
+        "changed the ranks of {} of {} plots that were held out.\n\n",
+        listText(tuning.at("train")), listText(tuning.at("hold_out")),
+        tuning.at("defaults_within_5_percent").get<int>(), tuning.at("points").size(),
+        tuning.at("held_out_plots_changed").get<int>(), tuning.at("held_out_plots").get<int>());
+    text +=
+        "| variant | found | error, default | tuned | held out, default | tuned | time | settings tried |\n"
+        "|---|---|---:|---:|---:|---:|---:|---:|\n";
+    for (const TableJson& point : tuning.at("points"))
+        text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n",
+                            plainText(point.at("variant").get<std::string>()), foundText(point),
+                            digitsOf(point.at("start_error")), digitsOf(point.at("error")),
+                            digitsOf(point.at("held_out_start_error")), digitsOf(point.at("held_out_error")),
+                            digitsOf(point.at("time_ratio")), point.at("asked").get<int>());
+    return text;
 }
 
 std::string documentText(const TableJson& document) {
@@ -156,6 +200,7 @@ std::string documentText(const TableJson& document) {
             text += "No pixel counts here, since the mask is 0 everywhere: times without errors.\n\n";
         text += tableText(document, rows, machines.size() > 1);
     }
+    if (document.contains("tuning")) text += tuneMarkdown(document["tuning"]);
     if (const size_t missing = document.at("missing").size(); missing > 0)
         text += fmt::format("\nNot measured yet: {} more.\n", missing);
     return text;

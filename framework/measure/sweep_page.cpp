@@ -24,9 +24,10 @@ results.json beside it.</noscript></div>
 <script type="application/json" id="results">
 {}</script>
 <script>
-{}{}</script>
+{}{}{}{}</script>
 )",
-            scriptJson(resultsJson(sweep, results)), page::plotScript, page::tableScript));
+            scriptJson(resultsJson(sweep, results)), page::plotScript, page::splitScript, page::tuneScript,
+            page::tableScript));
 }
 
 } // namespace kestrel

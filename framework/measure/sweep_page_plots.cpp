@@ -48,7 +48,8 @@ rows.forEach((row, i) => { row.index = i; });
 const manyMachines = R.machines.length > 1;
 const seriesNames = [...new Set(rows.map(r => r.series))];
 const colour = row => 'var(--s' + seriesNames.indexOf(row.series) % 8 + ')';
-const hollow = row => Math.floor(seriesNames.indexOf(row.series) / 8) % 2 === 1;
+// Hollow: the second eight series; of a tuned sweep the defaults beside what was found.
+const hollow = row => R.tuning ? row.axes.setting === 'default' : Math.floor(seriesNames.indexOf(row.series) / 8) % 2 === 1;
 
 // ---- what the axes can show
 const fixedTimes = ['total', 'generation', 'tracing', 'filter', 'frame'];

@@ -147,9 +147,9 @@ function controls() {
 }
 function drawAll() { drawPlots(); drawTable(); drawPictures(); }
 document.getElementById('page').replaceChildren(...[...header(), controls(),
-  make('h2', {}, 'Error against time'), make('p', { class: 'soft' }, 'Both axes are logarithmic; down and to the left is better. Points are medians, bars reach from the first to the third quartile.'),
+  ...tuningParts(), make('h2', {}, 'Error against time'), make('p', { class: 'soft' }, 'Both axes are logarithmic; down and to the left is better. Points are medians, bars reach from the first to the third quartile.'),
   plotArea, make('h2', {}, 'Table'), make('p', { class: 'soft' }, 'Click a heading to sort by it; what is marked at its left is on the Pareto front of its plot.'),
-  make('div', { class: 'scroll' }, table), pictureArea, tip].filter(e => e !== ''));
+  make('div', { class: 'scroll' }, table), ...splitParts(), pictureArea, tip].filter(e => e !== ''));
 drawAll();
 if (location.hash.length > 1) { const e = document.getElementById(location.hash.slice(1)); if (e) e.scrollIntoView(); }
 

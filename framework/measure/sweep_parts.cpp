@@ -121,6 +121,9 @@ std::string partText(const SweepPicture& picture) {
                           {"psnr", optionalJson(picture.errors->psnr)},
                           {"ssim", picture.errors->ssim},
                           {"flip", picture.errors->flip}};
+    if (picture.split)
+        json["split"] = {picture.split->mse,   picture.split->representation, picture.split->algorithm,
+                         picture.split->cross, picture.split->sampling,       picture.split->referenceNoise};
     if (picture.rays)
         json["rays"] = {{"count", picture.rays->rays},
                         {"hit_share", picture.rays->hitShare},
@@ -147,6 +150,10 @@ SweepPicture pictureOf(const std::string& text, const std::string& file) {
             const PartJson& errors = json.at("errors");
             picture.errors = SweepErrors{errors.at("mse").get<double>(), errors.at("ssim").get<double>(),
                                          errors.at("flip").get<double>(), optionalOf(errors.at("psnr"))};
+        }
+        if (json.contains("split")) {
+            const auto part = [&](size_t i) { return json.at("split").at(i).get<double>(); };
+            picture.split = ErrorSplit{part(0), part(1), part(2), part(3), part(4), part(5)};
         }
         if (json.contains("rays")) {
             const PartJson& rays = json.at("rays");

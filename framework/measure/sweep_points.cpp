@@ -41,6 +41,8 @@ SweepPoint pointOf(const Sweep& sweep, const SweepVariant& variant, const Choice
     point.ray = variant.ray;
     point.output = variant.output;
     point.settings = variant.settings;
+    point.free = variant.free;
+    point.exact = variant.exact;
     point.frames = variant.ray && sweep.rays ? sweep.rays->frames : variant.frames.value_or(sweep.frames);
     point.where = variant.where;
     for (size_t i = 0; i < choice.size(); ++i) {
@@ -133,7 +135,7 @@ std::vector<SweepPoint> expandSweep(const Sweep& sweep) {
 
 std::vector<SweepUnit> sweepUnits(const Sweep& sweep, const std::vector<SweepPoint>& points) {
     std::vector<SweepUnit> units;
-    std::set<std::string> slugs{"machines", "references"}; // they stand beside the units' folders
+    std::set<std::string> slugs{"machines", "references", "tuning"}; // they stand beside the units' folders
     for (size_t scene = 0; scene < sweep.scenes.size(); ++scene) {
         const size_t first = units.size();
         for (size_t i = 0; i < points.size(); ++i) {
@@ -255,6 +257,12 @@ Graph sweepGraph(const Sweep& sweep, const std::string& graph, const std::vector
     return result;
 }
 
+SweepPoint exactOf(const SweepPoint& point) {
+    SweepPoint exact = point;
+    exact.settings.insert(exact.settings.end(), point.exact.begin(), point.exact.end());
+    return exact;
+}
+
 void checkSweep(const Sweep& sweep, const std::vector<SweepPoint>& points, const Registry& registry) {
     std::vector<Problem> problems;
     std::set<std::string> told; // the points of a variant share its mistakes
@@ -280,6 +288,7 @@ void checkSweep(const Sweep& sweep, const std::vector<SweepPoint>& points, const
         std::vector<PortRef> outputs{point.output};
         if (point.ray && sweep.rays) outputs.push_back(sweep.rays->rays);
         check(point.graph, point.settings, outputs, point.where);
+        if (!point.exact.empty()) check(point.graph, exactOf(point).settings, outputs, point.where);
     }
     if (!problems.empty()) throw InputError(std::move(problems));
 }

@@ -1,7 +1,9 @@
 // What a sweep has measured: as parts (one file a measurement, so that a stopped sweep goes on), as rows, and
 // as results.json, results.csv, results.md and a page.
 #pragma once
+#include "image/error_split.h"
 #include "measure/sweep_file.h"
+#include "measure/tune/tune_report.h"
 #include <map>
 #include <optional>
 #include <string>
@@ -70,8 +72,9 @@ struct SweepPicture {
     std::string machine;
     std::optional<SweepErrors> errors;
     std::optional<SweepRayFigures> rays;
-    double compileMs = 0; // of the graph, without shaders
-    double setUpMs = 0;   // shaders, resources, the scene's upload and the first frame
+    std::optional<ErrorSplit> split; // of points that can trace their proxy exactly
+    double compileMs = 0;            // of the graph, without shaders
+    double setUpMs = 0;              // shaders, resources, the scene's upload and the first frame
     std::uint64_t transient = 0, unshared = 0, persistent = 0; // bytes
     std::vector<LeftOut> leftOut;
     std::map<std::string, double> reports; // "pass.key" of the last frame
@@ -104,6 +107,7 @@ SweepMachine machineOf(const std::string& text, const std::string& file);
 struct SweepRow {
     std::string scene, camera, point, variant, series, along, plot;
     std::vector<std::pair<std::string, std::string>> axes;
+    std::string tunedOf; // the point that this one is, tuned; empty: as the file has it
     bool ray = false;
     std::string machine; // that timed it
     int repeats = 0;     // timed frames
@@ -137,6 +141,7 @@ struct SweepResults {
         spins;                                              // machine -> spin tests (1, 2 threads)
     std::map<std::string, SweepReferenceRecord> references; // by scene
     std::vector<SweepRow> rows;
+    std::optional<TuneReport> tuning;
     std::vector<std::string> missing; // "scene: point" that this folder does not hold
 };
 

@@ -130,6 +130,33 @@ def test_an_empty_mask_is_told_and_stops_nothing():
         assert without_times(results(f"{here}/out")) == without_times(data)
 
 
+def test_takes_the_error_of_a_proxy_apart():
+    need_part("embree")
+    exact = ["ao.tracer=dda.tracer", "dda.method=dda_3d"]
+    variants = [{"name": "field", "graph": "sweeps/graphs/ao.json", "output": "mean.result", "exact": exact,
+                 "set": ["ao.tracer=field.tracer"]},
+                {"name": "grid walk", "graph": "sweeps/graphs/ao.json", "output": "mean.result", "exact": exact, "set": exact}]
+    with folder() as here:
+        file = tiny(here, variants=variants, frames=8, repeats=1)
+        done("sweep", file, "--out", f"{here}/out")
+        for row in results(f"{here}/out")["rows"]:
+            split = row["split"]
+            assert abs(split["sum"] - split["mse"]) < 0.05 * split["mse"], split
+            # The reference's noise as its own halves tell it, and as two seeds do.
+            assert 0.5 < split["reference_noise"] / row["reference_noise"] ** 2 < 2, (split, row["reference_noise"])
+            assert split["representation"] > 0 and split["sampling"] > 0
+            if row["variant"] == "grid walk":
+                assert split["algorithm"] == 0 and split["cross"] == 0, "it is the exact tracing itself"
+            else:
+                assert abs(row["mse"] - split["mse"]) < 0.1 * row["mse"]
+                assert split["algorithm"] > 0.002 or row["scene"] != "tower", "spheres about centres are no cells"
+        with open(f"{here}/out/results.csv", newline="") as stream:
+            assert all(float(line["split representation"]) > 0 for line in csv.DictReader(stream))
+        assert "MSE of the representation" in (Path(here) / "out" / "results.md").read_text()
+        wrong = [{**variants[0], "exact": ["ao.tracer=ddda.tracer"]}]
+        assert any("ddda" in line for line in refused("sweep", tiny(here, variants=wrong), "--list"))
+
+
 def test_its_commands_make_its_pictures_again_from_anywhere():
     need_part("embree")
     with folder() as here, folder() as reader:
