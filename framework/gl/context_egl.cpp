@@ -126,23 +126,25 @@ private:
     }
 
     void createContext() {
-        // The first pair asks to be told of resets (lost_context.h); a driver without that is asked again.
+        // Pairs that a driver may refuse come first, and go one after the other: to be told of resets
+        // (lost_context.h), and debug output of all that there is, which softpipe takes for a bad attribute.
         constexpr EGLint attributes[] = {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
                                          EGL_LOSE_CONTEXT_ON_RESET,
+#ifdef KESTREL_DEBUG
+                                         EGL_CONTEXT_OPENGL_DEBUG,
+                                         EGL_TRUE,
+#endif
                                          EGL_CONTEXT_MAJOR_VERSION,
                                          4,
                                          EGL_CONTEXT_MINOR_VERSION,
                                          6,
                                          EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                          EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-#ifdef KESTREL_DEBUG
-                                         EGL_CONTEXT_OPENGL_DEBUG,
-                                         EGL_TRUE,
-#endif
                                          EGL_NONE};
-        for (const EGLint* chosen : {attributes, attributes + 2})
-            if (context_ == EGL_NO_CONTEXT)
-                context_ = egl_.eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, chosen);
+        for (const EGLint* chosen = attributes; context_ == EGL_NO_CONTEXT; chosen += 2) {
+            context_ = egl_.eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, chosen);
+            if (*chosen == EGL_CONTEXT_MAJOR_VERSION) break;
+        }
         if (context_ == EGL_NO_CONTEXT)
             throw MachineError(
                 fmt::format("the driver refuses an OpenGL 4.6 core context (EGL error 0x{:x}): it needs "
