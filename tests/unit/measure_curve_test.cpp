@@ -69,6 +69,11 @@ TEST(StressCurves, AsTable) {
                                          "plain              0.125\n"
                                          "1                    0.5\n"
                                          "100                 none\n");
+    CurveResults layers = exampleCurve();
+    layers.curve = "layers";
+    EXPECT_THAT(curveText(layers),
+                HasSubstr("blob: distance to the picture of the triangles in opposite order, over "
+                          "surfaces behind a pixel\n"));
 }
 
 TEST(StressCurves, AsPicture) {

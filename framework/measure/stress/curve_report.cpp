@@ -24,6 +24,13 @@ std::string axisOf(const CurveResults& results) {
     return {};
 }
 
+// Whether the number that the curve is over should not change the picture.
+bool staysSame(const CurveResults& results) {
+    for (const StressCurve& curve : stressCurves())
+        if (curve.name == results.curve) return curve.staysSame;
+    return true;
+}
+
 std::string cell(double value) {
     if (std::isnan(value)) return "";
     return std::isinf(value) ? "none" : fmt::format("{:.3g}", value);
@@ -76,7 +83,9 @@ std::string curveText(const CurveResults& results) {
                     [i](const CurveSeries& series) -> const CurvePoint& { return series.points.at(i); });
             text += "\n";
         };
-        table("distance to the plain picture", &CurvePoint::own);
+        table(staysSame(results) ? "distance to the plain picture"
+                                 : "distance to the picture of the triangles in opposite order",
+              &CurvePoint::own);
         if (plot.hasTruth) table("distance to the reference", &CurvePoint::truth);
     }
     return text;
@@ -85,12 +94,8 @@ std::string curveText(const CurveResults& results) {
 std::string curvePage(const CurveResults& results) {
     using page::htmlText;
     std::string does;
-    bool same = true;
     for (const StressCurve& curve : stressCurves())
-        if (curve.name == results.curve) {
-            does = curve.does;
-            same = curve.staysSame;
-        }
+        if (curve.name == results.curve) does = curve.does;
     const std::string title = fmt::format("{}: {}", results.title, results.curve);
     std::string body = fmt::format("<div id=\"page\">\n<h1>{}</h1>\n<p>{}.</p>\n<div class=\"facts\">",
                                    htmlText(title), htmlText(does));
@@ -102,11 +107,12 @@ std::string curvePage(const CurveResults& results) {
         "</div>\n<p class=\"soft\">Distances are root mean squares of the difference over that of the "
         "picture "
         "that each is held against: {}. A cross: no picture, or one with values that are no numbers.</p>\n",
-        same ? "on the left the technique's own of the scene as it is (at 'plain' two seeds), on the right "
-               "the "
-               "reference's"
-             : "on the left the technique's own of the triangles in opposite order, on the right the "
-               "reference's");
+        staysSame(results)
+            ? "on the left the technique's own of the scene as it is (at 'plain' two seeds), on the right "
+              "the "
+              "reference's"
+            : "on the left the technique's own of the triangles in opposite order, on the right the "
+              "reference's");
     for (const CurvePlot& plot : results.plots) {
         body += fmt::format("<h2>{}</h2>\n<div class=\"card\">{}</div>\n", htmlText(plot.scene),
                             curveSvg(results, plot));
