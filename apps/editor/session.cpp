@@ -70,6 +70,7 @@ void Session::take() {
             if (const GraphPass* pass = located_.find(port.pass))
                 if (const PassType* type = registry_.find(pass->type);
                     type != nullptr && type->port(port.port) != nullptr &&
+                    !isModule(type->port(port.port)->kind) && // nothing to see: read() says so
                     std::find(previews.begin(), previews.end(), port) == previews.end())
                     previews.push_back(port);
     if (renderer_ == nullptr || key != sceneKey_) {

@@ -270,5 +270,15 @@ TEST_F(EditorBehaviours, Nr12AsksBeforeWorkIsLost) {
     EXPECT_TRUE(editor_->done());
 }
 
+// A module has no picture: the viewport says so, and nothing is wrong with the graph.
+TEST_F(EditorBehaviours, AModuleThatIsLookedAtIsNoProblem) {
+    editor_->viewport.showPort({"roma", "tracer"});
+    person_->rest();
+    EXPECT_TRUE(session_->problems().empty());
+    std::string why;
+    EXPECT_TRUE(session_->read({"roma", "tracer"}, why).empty());
+    EXPECT_THAT(why, testing::HasSubstr("roma.tracer is a shader module: it has no content"));
+}
+
 } // namespace
 } // namespace kestrel::edit
