@@ -32,7 +32,7 @@ slow='ABuffer(Lists|Rays|Hits|Primitives|Construction|Limits|Layers)\.|ShippedEr
 slow+='|ShippedShaders\.CompileUnderEvery|stress_test\.test_what_is_killed|that_is_killed|Composite\.(Panes|TheHouse|What|More|Surfaces)'
 slow+='|Hold/path_trace|LeavingOutTest\.ChangesNoImage/(path_trace|full|transparency|rsm_gather)|Horizons\.WithLayersTheTower'
 slow+='|DistanceFields\.EveryVariant|ShippedMemory'
-# Far more than ten minutes: ten thousand actions in the window, undone to the byte; ten thousand edits, and what they leave in memory.
+# Eight minutes of processor time: ten thousand actions in the window, undone to the byte; ten thousand edits, and what they leave in memory.
 long='Editor(Monkey|Endurance)\.TenThousand'
 sources() { git -C "$root" ls-files '*.cpp' '*.h' | grep -v '^shaders/'; }
 
