@@ -1,11 +1,15 @@
 #!/usr/bin/env bash
-# Installs what is missing and builds into build/ (or $KESTREL_BUILD). Usage: apps/build.sh [test | render] [CMAKE ARGUMENT]...;
-# `render` builds what renders a graph, without the editor.
+# Installs what is missing and builds into build/ (or $KESTREL_BUILD). Usage: apps/build.sh [test | demo] [CMAKE ARGUMENT]...;
+# `demo` builds what apps/demo.sh runs: the command line, and the plugins of its graphs.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=${KESTREL_BUILD:-$root/build}
-tests=OFF target=all
-[ "${1:-}" = render ] && shift && target=kestrel_app
+tests=OFF target=all passes=
+if [ "${1:-}" = demo ]; then
+    shift
+    target=kestrel_app
+    passes='ambient_occlusion;bvh;filter;gbuffer;occupancy;reference'
+fi
 if [ "${1:-}" = test ]; then
     tests=ON
     shift
@@ -13,9 +17,11 @@ if [ "${1:-}" = test ]; then
 else
     "$root/apps/install.sh"
 fi
-# Tests stay in a build that has them: the demo must not throw away what the test command built.
-[ -f "$build/CMakeCache.txt" ] && grep -q '^KESTREL_TESTS:BOOL=ON' "$build/CMakeCache.txt" && tests=ON
-cmake -S "$root" -B "$build" -G Ninja -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -DKESTREL_TESTS=$tests "$@" >"$build.log" 2>&1 ||
+# What a build has stays: the demo must not throw away what another command built.
+has() { grep -q "^$1\$" "$build/CMakeCache.txt" 2>/dev/null; }
+has KESTREL_TESTS:BOOL=ON && tests=ON
+has KESTREL_PASSES:STRING= && passes=
+cmake -S "$root" -B "$build" -G Ninja -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -DKESTREL_TESTS=$tests "-DKESTREL_PASSES=$passes" "$@" >"$build.log" 2>&1 ||
     { cat "$build.log" >&2; exit 2; }
 grep -- '-- Left out' "$build.log" || true
 rm -f "$build.log"

@@ -8,7 +8,8 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=${KESTREL_BUILD:-$root/build}
 "$root/apps/install.sh" bundle
-[ -x "$build/bin/kestrel" ] || "$root/apps/build.sh"
+# What the demo built is not all.
+[ -x "$build/bin/kestrel" ] && grep -q '^KESTREL_PASSES:STRING=$' "$build/CMakeCache.txt" || "$root/apps/build.sh"
 folder=$(realpath "${1:-$build}")
 name=kestrel-$("$build/bin/kestrel" --version | awk 'NR == 1 { print $2 }')-$(uname -m)
 temporary=$(mktemp -d)

@@ -6,7 +6,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 build=${KESTREL_BUILD:-$root/build}
 out=$root/out
 frames=64
-"$root/apps/build.sh" render
+"$root/apps/build.sh" demo
 kestrel=$build/bin/kestrel
 mkdir -p "$out"
 cd "$root"
@@ -38,4 +38,4 @@ for row in "${rows[@]}"; do
     printf '%-24s %-18s %12s %8s %8s\n' "$file" "$what" "$ms" "$flip" "$mse"
 done
 echo "out/stats.json: the times and the memory of the run with ROMA, step by step"
-echo "apps/build.sh builds the rest: the editor"
+echo "apps/build.sh builds the rest: the other passes, and the editor"

@@ -1,6 +1,7 @@
 #include "named.h"
 #include "core/files.h"
 #include "plugin/loader.h"
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <fmt/format.h>
@@ -45,6 +46,21 @@ Registry& loadedRegistry() {
         return loaded;
     }();
     return registry;
+}
+
+std::vector<std::string> absentPlugins() {
+    std::vector<std::string> absent;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(shareFolder() / "shaders", ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (!entry.is_directory(ignored) || name == "lib" || name == "shared") continue;
+        if (std::ranges::none_of(pluginFolders(), [&](const std::filesystem::path& folder) {
+                return std::filesystem::exists(folder / (name + ".so"), ignored);
+            }))
+            absent.push_back(name);
+    }
+    std::ranges::sort(absent);
+    return absent;
 }
 
 } // namespace kestrel

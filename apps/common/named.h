@@ -3,6 +3,7 @@
 #include "graph/registry.h"
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace kestrel {
 
@@ -16,5 +17,9 @@ Extent parseSize(const std::string& text);
 // All pass types of the plugins that are there. A plugin that can't be used is told and skipped. Lives until
 // the process ends; the editor puts types in it whose plugin was built anew.
 Registry& loadedRegistry();
+
+// The plugins, by name, whose shaders are there and which are not: those that a build left out
+// (KESTREL_PASSES).
+std::vector<std::string> absentPlugins();
 
 } // namespace kestrel

@@ -7,14 +7,18 @@
 #include "core/log.h"
 #include "core/version.h"
 #include "machine.h"
+#include "named.h"
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <new>
+#include <string>
 #include <unistd.h>
+#include <vector>
 
 namespace {
 
@@ -91,6 +95,18 @@ void endBySignal(int signal) {
     std::_Exit(static_cast<int>(ExitStatus::BadInput));
 }
 
+// Where a pass type is unknown, it may be of a plugin that was not built.
+void tellAbsentPlugins(const Error& error) {
+    if (std::ranges::none_of(error.problems(), [](const Problem& problem) {
+            return problem.message.find("unknown type") != std::string::npos ||
+                   problem.message.find("no pass type") != std::string::npos;
+        }))
+        return;
+    if (const std::vector<std::string> absent = absentPlugins(); !absent.empty())
+        tell(error.status(),
+             fmt::format("not built here: {}; apps/build.sh builds all", fmt::join(absent, ", ")));
+}
+
 int runGuarded(const Run& run) {
     try {
         const int status = run();
@@ -98,6 +114,7 @@ int runGuarded(const Run& run) {
         return status;
     } catch (const Error& error) {
         for (const Problem& problem : error.problems()) tell(error.status(), oneLine(problem.text()));
+        tellAbsentPlugins(error);
         return static_cast<int>(error.status());
     } catch (const std::bad_alloc&) {
         return tell(ExitStatus::MachineLacks, "there is not enough memory");

@@ -1,5 +1,6 @@
 """kestrel check, dot, passes, scene, compare, and the usage."""
 import json
+import re
 from pathlib import Path
 
 from json_schema import misfits
@@ -232,6 +233,36 @@ def test_facts_tell_what_a_scene_leaves_out_of_the_passes_of_a_graph():
     assert "DirectLight" not in {one["pass"] for passes in facts.values() for one in passes}
     assert "| no triangle |" in done("passes", "--facts", RAY_AO, "--markdown").out
     assert "did you mean 'ray_ao.json'" in refused("passes", "--facts", "rey_ao.json")[0]
+
+
+def test_what_a_build_left_out_is_told_where_a_type_is_unknown():
+    """As after the demo, which builds the plugins of its own graphs: shaders are there whose plugin is not."""
+    with folder() as here:
+        share = Path(here)
+        (share / "graphs").symlink_to(SOURCE / "graphs")
+        (share / "shaders").mkdir()
+        for each in (SOURCE / "shaders").iterdir():
+            (share / "shaders" / each.name).symlink_to(each)
+        (share / "shaders" / "unbuilt").mkdir()
+        graph = json.loads(Path(RAY_AO).read_text())
+        graph["passes"]["gbuffer"]["type"] = "Unheard"
+        (share / "graph.json").write_text(json.dumps(graph))
+        env = {"KESTREL_SHARE": str(share)}
+        told = "kestrel: not built here: unbuilt; apps/build.sh builds all"
+        for arguments in [["check", share / "graph.json"], ["passes", "Unheard"]]:
+            lines = refused(*arguments, env=env)
+            assert "Unheard" in lines[0] and lines[-1] == told, lines
+        assert told not in refused("check", share / "none.json", env=env)
+
+
+def test_the_demo_builds_the_plugins_of_its_graphs():
+    script = (SOURCE / "apps" / "demo.sh").read_text()
+    graphs = set(re.findall(r"graphs/\w+\.json", script))
+    assert graphs
+    types = {one["type"] for graph in graphs for one in json.loads((SOURCE / graph).read_text())["passes"].values()}
+    plugins = {row["plugin"].removesuffix(".so") for row in done("passes", "--json").json()["passes"] if row["name"] in types}
+    built = re.search(r"passes='([\w;]+)'", (SOURCE / "apps" / "build.sh").read_text()).group(1)
+    assert plugins | {"reference"} == set(built.split(";")), plugins
 
 
 if __name__ == "__main__":
