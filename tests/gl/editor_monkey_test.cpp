@@ -145,7 +145,7 @@ protected:
                 for (int back = 0; back < 40; ++back) person_->press("Ctrl+Z");
         }
         // Much of what it did it took back itself.
-        EXPECT_GT(session_->document.revision(), static_cast<std::uint64_t>(actions) / 10);
+        EXPECT_GT(session_->document.revision(), static_cast<std::uint64_t>(actions) / 20);
         EXPECT_GT(session_->document.history().size(), 0u);
         EXPECT_GT(session_->frames(), static_cast<std::uint64_t>(actions) / 20);
         while (session_->document.undo()) {
