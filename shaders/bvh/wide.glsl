@@ -206,6 +206,8 @@ Surface M(surface)(Ray ray, Hit hit) { return sceneSurface(hit.id.x, unpackUnorm
 
 #ifdef PROVIDES_HITS
 
+// About front to back: who keeps a few of the hits may end the ray once it has them (Listing 1 of the stochastic depth map's
+// paper), and those are to be the near ones.
 void M(all)(Ray ray) {
     M(Walk) walk = M(start)(ray);
     bool stopped = false;
@@ -213,7 +215,7 @@ void M(all)(Ray ray) {
         ITERATION;
         TriangleHit hit;
         uvec3 ids;
-        bool met = M(step)(walk, ray.tMin, ray.tMax, false, hit, ids);
+        bool met = M(step)(walk, ray.tMin, ray.tMax, true, hit, ids);
 #ifdef MATERIAL_MASKED
         if (met && ids.z >= 2u) met = sceneCovers(ids.x, vec2(hit.u, hit.v));
 #endif
