@@ -81,8 +81,8 @@ bool Viewport::Picture::makeTexture(const Development& development) {
     return true;
 }
 
-void Viewport::develop(Picture& picture, const Development& development) {
-    if (picture.makeTexture(development)) written_.push_back(textureId(picture.texture));
+void Viewport::develop(Picture& picture, const Development& how) {
+    if (picture.makeTexture(how)) written_.push_back(textureId(picture.texture));
 }
 
 void Viewport::show(Session& session, const std::function<void(const std::string&)>& say) {

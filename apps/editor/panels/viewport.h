@@ -68,7 +68,7 @@ private:
         void follow(Session& session, const PortRef& wantedPort);
         bool makeTexture(const Development& development); // true: it has other content
     };
-    void develop(Picture& picture, const Development& development);
+    void develop(Picture& picture, const Development& how);
     void bar();
     void draw(Session& session);
     void drawPicture(Picture& picture, ImVec2 low, ImVec2 high, float from, float to);
