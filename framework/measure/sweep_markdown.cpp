@@ -81,7 +81,7 @@ std::vector<Column> columnsOf(const TableJson& document, const std::vector<const
                                      {"of both together", "cross"},
                                      {"of its noise", "sampling"},
                                      {"of the reference's noise", "reference_noise"}})
-        columns.push_back({title, [key](const TableJson& row) {
+        columns.push_back({title, [key = key](const TableJson& row) {
                                return row.contains("split") ? digitsOf(row["split"].at(key)) : "-";
                            }});
     columns.push_back({"rays that agree, %", [](const TableJson& row) {

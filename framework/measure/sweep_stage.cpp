@@ -26,7 +26,7 @@ double exposureFor(const Image& reference) {
     std::erase_if(light, [](float value) { return !std::isfinite(value); });
     if (light.empty()) return 1;
     const auto at = light.begin() + static_cast<std::ptrdiff_t>(99 * (light.size() - 1) / 100);
-    std::ranges::nth_element(light, at);
+    std::nth_element(light.begin(), at, light.end());
     return *at > 0 ? 1 / static_cast<double>(*at) : 1;
 }
 

@@ -167,7 +167,7 @@ std::vector<double> tuneValues(const TuneAxis& axis, double low, double high, in
         const double fine = (axis.logarithmic ? value * std::expm1(step) : step) / 20;
         values.push_back(fine > 0 ? roundedTo(axis, value, fine) : value);
     }
-    values.erase(std::ranges::unique(values).begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;
 }
 
