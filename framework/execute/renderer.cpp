@@ -5,7 +5,6 @@
 #include "gl/context.h"
 #include "gl/lost_context.h"
 #include "graph/value_text.h"
-#include "image/io.h"
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -86,32 +85,11 @@ Renderer::~Renderer() = default;
 
 // ---- compiling
 
-namespace {
-
-using Files = std::map<std::filesystem::path, std::optional<FileState>>;
-
-// The file that a property names; empty if it is none or names none.
-std::filesystem::path namedFile(const PropertyInfo& property, const Pass& pass) {
-    if (property.unit != "file") return {};
-    return imageName(std::get<std::string>(property.get(pass))).file;
-}
-
-Files filesOf(const PassSet& passes, const Graph& graph, const Registry& registry) {
-    Files files;
-    for (const GraphPass& pass : graph.passes)
-        for (const PropertyInfo& property : registry.find(pass.type)->properties)
-            if (std::filesystem::path file = namedFile(property, *passes.at(pass.name)); !file.empty())
-                files[file] = fileState(file);
-    return files;
-}
-
-} // namespace
-
 void Renderer::compileGraph(const Graph& graph) {
     const World world{facts_, capabilities_, options_.size};
     const auto start = Clock::now();
     PassSet passes = reusePasses(graph, registry_, passes_);
-    const Files files = filesOf(passes, graph, registry_);
+    const PropertyFiles files = propertyFiles(passes, graph, registry_);
     for (const auto& [file, state] : files) files_.insert_or_assign(file, state);
     auto plan = std::make_shared<const Plan>(
         compile(graph, registry_, passes, world,
@@ -122,7 +100,7 @@ void Renderer::compileGraph(const Graph& graph) {
         std::string text = fmt::format("{}\n", pass.instance->typeInstance);
         for (const PropertyInfo& property : registry_.find(pass.type)->properties) {
             text += property.name + "=" + jsonText(property.get(*pass.instance)) + "\n";
-            if (const auto file = files.find(namedFile(property, *pass.instance));
+            if (const auto file = files.find(propertyFile(property, *pass.instance));
                 file != files.end() && file->second)
                 text += fmt::format("{} {}\n", file->second->bytes,
                                     file->second->modified.time_since_epoch().count());
@@ -208,8 +186,7 @@ void Renderer::setScene(Scene scene) {
 
 bool Renderer::reloadIfChanged() {
     const bool shaders = executor_->shaders().changed(); // forgets what changed
-    const auto changed = [](const auto& file) { return fileState(file.first) != file.second; };
-    if (!shaders && std::ranges::none_of(files_, changed)) return false;
+    if (!shaders && !changed(files_)) return false;
     compileGraph(graph_);
     return true;
 }

@@ -1,8 +1,8 @@
 // A graph on a scene, frame after frame: facts, compilation, execution and time in one place. Tests, the
 // command line, sweeps and the editor all render through it.
 #pragma once
-#include "core/file_state.h"
 #include "execute/executor.h"
+#include "execute/property_files.h"
 #include "graph/plan.h"
 #include "image/image.h"
 #include "scene/facts.h"
@@ -115,7 +115,7 @@ private:
     PassSet passes_;
     std::map<std::string, Growth> grown_; // by pass
     // What properties name, as it was before it was read last: of this graph, and of one that was refused.
-    std::map<std::filesystem::path, std::optional<FileState>> files_;
+    PropertyFiles files_;
     std::unique_ptr<GpuScene> gpu_;
     std::unique_ptr<Executor> executor_;
 
