@@ -6,7 +6,6 @@
 namespace kestrel {
 
 namespace provides {
-// Such a tracer never replaces a direction: nobody calls its aim.
 inline constexpr Bits ManyRays = 1 << 4;
 } // namespace provides
 namespace requests {

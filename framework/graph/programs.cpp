@@ -61,20 +61,20 @@ void bindModules(const Network& network, int node, const std::vector<ModuleUse>&
 }
 
 // What a consumer requests reaches the module as defines. A module inside a module is asked by the inner one,
-// but may snap only if the outermost consumer bears it.
+// but may snap only if the outermost consumer bears it, and has rays by number only from one that has them.
 ModuleInstance instanceOf(const Network& network, const Provider& provider, Bits taken) {
     ModuleInstance instance{provider.module->shader, provider.module->defines, {}};
     constexpr std::pair<Bits, const char*> defines[] = {
         {requests::AnyHit, "REQUESTS_ANY"},      {requests::ClosestHit, "REQUESTS_CLOSEST"},
         {requests::Surface, "REQUESTS_SURFACE"}, {requests::Snap, "REQUESTS_SNAP"},
         {requests::AllHits, "REQUESTS_ALL"},     {requests::ManyRays, "REQUESTS_MANY"}};
+    constexpr Bits outermost = requests::Snap | requests::ManyRays;
     for (const auto& [bit, name] : defines)
         if ((taken & bit) != 0) instance.defines[name] = "1";
     for (const ModuleUse& use : provider.module->modules) {
         const auto inner = providerOf(network, provider.node, use.port);
         if (!inner) continue;
-        const Bits innerTakes = (taken & requests::Snap) != 0 ? use.requests : use.requests & ~requests::Snap;
-        instance.modules[use.port] = instanceOf(network, *inner, innerTakes);
+        instance.modules[use.port] = instanceOf(network, *inner, use.requests & (taken | ~outermost));
     }
     return instance;
 }

@@ -1,6 +1,7 @@
 #include "near_far_tracer.h"
 #include "draw/near_scene.h"
 #include "execute/commands.h"
+#include "graph/many_rays.h"
 #include "shared/near_field.h"
 
 namespace kestrel {
@@ -29,7 +30,8 @@ Declaration NearFarTracer::declare(const World&, const Inputs& inputs, const Dem
         declaration.leftOut.push_back({"near tracer", "its reach is 0"});
         return declaration;
     }
-    const Bits given = (near & far & provides::Surface) | ((near | far) & provides::Approximate) |
+    const Bits given = (near & far & provides::Surface) | (near & provides::ManyRays) |
+                       ((near | far) & provides::Approximate) |
                        (far & (provides::Snaps | provides::AlwaysSnaps));
     declaration.outputs = {{.port = "tracer", .desc = Desc::module(given)}};
     if (!demand.reads("tracer")) return declaration;
@@ -39,10 +41,14 @@ Declaration NearFarTracer::declare(const World&, const Inputs& inputs, const Dem
     Bits taken = demand.requests("tracer") &
                  (requests::AnyHit | requests::ClosestHit | requests::Surface | requests::Snap);
     if ((given & provides::Surface) == 0) taken &= ~requests::Surface;
-    declaration.modules.push_back({.port = "tracer",
-                                   .shader = "near_field/near_far.glsl",
-                                   .uses = {{.port = "settings", .access = Access::Uniform}},
-                                   .modules = {{"near", taken & ~requests::Snap}, {"far", taken}}});
+    // Many rays are the near half's to take at once; the far one has them one by one.
+    const Bits many = demand.requests("tracer") & requests::ManyRays;
+    const Bits farTaken = taken | (many != 0 ? requests::AnyHit : 0);
+    declaration.modules.push_back(
+        {.port = "tracer",
+         .shader = "near_field/near_far.glsl",
+         .uses = {{.port = "settings", .access = Access::Uniform}},
+         .modules = {{"near", (taken & ~requests::Snap) | many}, {"far", farTaken}}});
     declaration.outputs.push_back(
         {.port = "settings", .desc = Desc::buffer(sizeof(shared::NearFarSettings))});
     declaration.steps.push_back(

@@ -49,7 +49,10 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
         rays.format == Format::RGBA32UI &&
         rays.bytes / 16 <= static_cast<std::uint64_t>(world.capabilities.maxTextureBufferTexels);
     if (!texels) step.defines.emplace("RAYS_STORAGE", "1");
-    if (query == Query::Any && texels && (inputs["tracer"].desc.provides & provides::ManyRays) != 0) {
+    // What a snapped ray was replaced by is told ray by ray.
+    const Bits given = inputs["tracer"].desc.provides;
+    const bool snaps = snap && (given & (provides::Snaps | provides::AlwaysSnaps)) != 0;
+    if (query == Query::Any && texels && !snaps && (given & provides::ManyRays) != 0) {
         step.modules = {{"tracer", requests::ManyRays}};
         step.defines.emplace("RAYS", std::to_string(raysTogether));
     }

@@ -12,9 +12,12 @@
 #include "shared/random.h"
 #include "lib/face.glsl"
 #include "lib/iterations.glsl"
-#ifndef PIXELS
-#include <port:tracer>
+#include "lib/tracer.glsl"
+#ifdef PIXELS
+Ray rays[PIXELS * RAYS];
+Ray tracer_ray(uint i) { return rays[i]; }
 #endif
+#include <port:tracer>
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -79,39 +82,45 @@ void give(ivec2 pixel, bool background, float open, float sum) {
 #endif
 }
 
+// A ray as it will be traced, and what it counts. Whether it has to be traced.
+bool aimedRay(Point point, uint i, out Ray ray) {
+    ray = rayFrom(point, i);
+    tracer_aim(ray);
+#ifndef COSINE_RATIO
+    ray.weight = ray.weight > 0.0 ? 1.0 : 0.0;
+#endif
+    bool leaves = leaveFace(ray, point.face);
+    if (point.background || ray.weight == 0.0) ray.tMax = -1.0; // an empty interval: no tracer walks it
+    return leaves;
+}
+
 #ifdef PIXELS
 
 // The tracer takes many rays at once: those of so many pixels, one above the other.
-ivec2 pixelOf(uint i) {
-    return ivec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y * uint(PIXELS) + i);
-}
-
-uint below = 0u; // which rays do not leave their faces
-Ray tracer_ray(uint i) {
-    Point point = pointAt(pixelOf(i / uint(RAYS)));
-    Ray ray = rayFrom(point, i % uint(RAYS));
-    if (!leaveFace(ray, point.face)) below |= 1u << i;
-    return ray;
-}
-#include <port:tracer>
+ivec2 pixelOf(uint i) { return ivec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y * uint(PIXELS) + i); }
 
 void main() {
-    const uint allRays = (1u << uint(RAYS)) - 1u;
-    ivec2 size = imageSize(visibility);
-    uint wanted = 0u;
+    uint wanted = 0u, inside = 0u;
     for (uint i = 0u; i < uint(PIXELS); ++i) {
-        ITERATION;
-        ivec2 pixel = pixelOf(i);
-        if (all(lessThan(pixel, size)) && !pointAt(pixel).background) wanted |= allRays << (i * uint(RAYS));
+        Point point = pointAt(pixelOf(i));
+        if (!point.background) inside |= 1u << i;
+        for (uint j = 0u; j < uint(RAYS); ++j) {
+            ITERATION;
+            uint k = i * uint(RAYS) + j;
+            if (aimedRay(point, j, rays[k]) && rays[k].tMax >= 0.0) wanted |= 1u << k;
+        }
     }
     uint open = wanted & ~tracer_anyHits(wanted);
-    open &= ~below;
     for (uint i = 0u; i < uint(PIXELS); ++i) {
-        ITERATION;
+        float seen = 0.0, sum = 0.0;
+        for (uint j = 0u; j < uint(RAYS); ++j) {
+            ITERATION;
+            uint k = i * uint(RAYS) + j;
+            sum += rays[k].weight;
+            if ((open >> k & 1u) != 0u) seen += rays[k].weight;
+        }
         ivec2 pixel = pixelOf(i);
-        uint place = i * uint(RAYS);
-        if (all(lessThan(pixel, size)))
-            give(pixel, (wanted >> place & 1u) == 0u, float(bitCount(open >> place & allRays)), float(RAYS));
+        if (all(lessThan(pixel, imageSize(visibility)))) give(pixel, (inside >> i & 1u) == 0u, seen, sum);
     }
     ITERATIONS_END;
 }
@@ -126,18 +135,11 @@ void main() {
     float open = 0.0, sum = 0.0;
     for (uint i = 0u; i < uint(RAYS); ++i) {
         ITERATION;
-        Ray ray = rayFrom(point, i);
-        tracer_aim(ray);
-#ifdef COSINE_RATIO
-        float w = ray.weight;
-#else
-        float w = ray.weight > 0.0 ? 1.0 : 0.0;
-#endif
-        bool leaves = leaveFace(ray, point.face);
-        if (point.background || w == 0.0) ray.tMax = -1.0; // an empty interval: no tracer walks it
+        Ray ray;
+        bool leaves = aimedRay(point, i, ray);
         bool met = tracer_anyHit(ray);
-        if (leaves && !met) open += w;
-        sum += w;
+        if (leaves && !met) open += ray.weight;
+        sum += ray.weight;
     }
     ITERATIONS_END;
     give(pixel, point.background, open, sum);

@@ -3,7 +3,12 @@
 //
 // The lowest bit of a hit's source says who answered, 1 far; the bits above are the answering tracer's own.
 #include "lib/tracer.glsl"
+#include "lib/iterations.glsl"
 #include "shared/near_field.h"
+#ifdef REQUESTS_MANY
+Ray M(nearPart)(Ray ray);
+Ray M(near_ray)(uint i) { return M(nearPart)(M(ray)(i)); }
+#endif
 #include <port:near>
 #include <port:far>
 
@@ -28,6 +33,19 @@ bool M(anyHit)(Ray ray) {
     bool answered = M(near_anyHit)(M(nearPart)(ray));
     return M(far_anyHit)(M(farPart)(ray, answered)) || answered;
 }
+
+#ifdef REQUESTS_MANY
+// The far half first: it answers in constant time, and what it has met needs no exact answer.
+uint M(anyHits)(uint wanted) {
+    uint hits = 0u;
+    for (uint i = 0u; i < 32u && wanted >> i != 0u; ++i) {
+        ITERATION;
+        bool asked = (wanted >> i & 1u) != 0u;
+        if (M(far_anyHit)(M(farPart)(M(ray)(i), !asked))) hits |= 1u << i;
+    }
+    return hits | M(near_anyHits)(wanted & ~hits);
+}
+#endif
 
 #if defined(REQUESTS_CLOSEST) || defined(REQUESTS_SURFACE)
 bool M(closestHit)(Ray ray, out Hit hit) {

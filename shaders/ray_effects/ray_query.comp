@@ -42,9 +42,12 @@ int rayNumber(uint i) {
     return (invocation / abreast * RAYS + int(i)) * abreast + invocation % abreast;
 }
 
+void tracer_aim(inout Ray ray);
 Ray tracer_ray(uint i) {
     bool exists;
-    return rayAt(rayNumber(i), exists);
+    Ray ray = rayAt(rayNumber(i), exists);
+    tracer_aim(ray);
+    return ray;
 }
 #include <port:tracer>
 

@@ -125,6 +125,32 @@ TEST_F(NearField, TwoExactHalvesAreTheWhole) {
               0);
 }
 
+// An exact near half that takes many rays at once is asked after the far one, and for all rays of an
+// invocation: the answers are those of one ray after the other, to the bit, snapped or not, one ray a pixel
+// or several.
+TEST_F(NearField, ManyRaysAtOnceAreAnsweredAsOneByOne) {
+    const Scene scene = loadScene("builtin:blob?detail=0.1");
+    for (const char* snap : {"ao.snap=true", "ao.snap=false"})
+        for (const char* rays : {"ao.rays=1", "ao.rays=20"})
+            for (const char* tracer : {"hybrid.tracer", "nested.tracer"}) {
+                const auto by = [&](const char* layout) {
+                    return occlusion(scene, tracer, 2, {"hybrid.near=bvh.tracer", layout, snap, rays});
+                };
+                const Image many = by("bvh.layout=wide");
+                EXPECT_EQ(difference(by("bvh.layout=binary"), many).largest, 0) << snap << rays << tracer;
+                EXPECT_GT(difference(many, occlusion(scene, "roma.tracer", 2, {snap, rays})).rms, 0.001);
+            }
+    // Asked by one that has rays by number and by one that has not, in one graph.
+    Renderer made =
+        traced(scene, {"hybrid.near=bvh.tracer", "ao.tracer=hybrid.tracer", "query.tracer=hybrid.tracer"},
+               {{"mean", "result"}, {"query", "hits"}});
+    made.frame();
+    EXPECT_EQ(difference(made.read({"mean", "result"}),
+                         occlusion(scene, "hybrid.tracer", 1, {"hybrid.near=bvh.tracer"}))
+                  .largest,
+              0);
+}
+
 TEST_F(NearField, TracersOfTracersNest) {
     const Scene scene = loadScene("builtin:blob?detail=0.1");
     // nested = (hybrid = (bvh to 0.1, bvh) to 0.5, bvh), and with the hybrid as the far half.
