@@ -18,7 +18,7 @@ public:
                                       const Demand& demand) const override;
 
     ABufferRecord record = ABufferRecord::Fragment;
-    ABufferMarching march = ABufferMarching::Exhaustive;
+    ABufferMarching march = ABufferMarching::Hierarchical;
     ABufferLayering layering = ABufferLayering::Multi;
     int steps = 100;
     bool skipping = true;

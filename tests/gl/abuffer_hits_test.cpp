@@ -37,7 +37,7 @@ TEST_F(ABufferHits, OfPrimitivesAreTheHierarchys) {
     }
     const Scene scene = loadScene("builtin:lattice?detail=0.3");
     const std::vector<float> expected = counts(scene, "bvh.hits");
-    for (const char* form : {"abuffer.skipping=false", "abuffer.march=hierarchical"})
+    for (const char* form : {"abuffer.skipping=false", "abuffer.march=exhaustive"})
         EXPECT_EQ(counts(scene, "abuffer.hits", {"abuffer.record=primitive", "store.buckets=16", form}),
                   expected)
             << form;
@@ -57,7 +57,7 @@ TEST_F(ABufferHits, OfFragmentsAreThePixelsLists) {
         different += std::abs(first[i] - expected[i]);
     }
     EXPECT_LE(different, 0.02 * sum) << different << " of " << sum;
-    for (const char* form : {"store.structure=sb", "store.structure=ll", "abuffer.march=hierarchical"})
+    for (const char* form : {"store.structure=sb", "store.structure=ll", "abuffer.march=exhaustive"})
         EXPECT_EQ(counts(scene, "abuffer.hits", {form}), first) << form;
     const std::vector<float> nearest = counts(scene, "abuffer.hits", {"abuffer.layering=single"});
     for (size_t i = 0; i < nearest.size(); ++i) EXPECT_EQ(nearest[i], std::min(first[i], 1.0f)) << i;

@@ -89,7 +89,7 @@ TEST_F(ABufferRays, SkippingAndStructureChangeNoHit) {
                 const std::vector<std::string> store = {fmt::format("store.structure={}", structure),
                                                         fmt::format("store.buckets={}", buckets)};
                 for (const char* form :
-                     {"abuffer.skipping=false", "abuffer.skipping=true", "abuffer.march=hierarchical"})
+                     {"abuffer.skipping=false", "abuffer.march=exhaustive", "abuffer.march=hierarchical"})
                     expectEqual({store[0], store[1], form});
                 // That data lies elsewhere is seen with the others.
                 if (!bucketed) expectEqual({store[0], "store.decoupled=false"});
