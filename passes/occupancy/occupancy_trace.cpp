@@ -1,8 +1,12 @@
 #include "occupancy_trace.h"
 #include "execute/commands.h"
 #include "execute/exhausted_rays.h"
+#include "graph/many_rays.h"
 #include "grid.h"
+#include "shared/occupancy_bricks.h"
 #include "tracing.h"
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <fmt/format.h>
 
@@ -26,17 +30,23 @@ Desc columnsDesc(int resolution, int levels) {
 } // namespace
 
 PassType OccupancyTrace::type() {
-    return Describe<OccupancyTrace>("OccupancyTrace", "Walks through an occupancy map: 3D or 2D DDA")
+    return Describe<OccupancyTrace>("OccupancyTrace",
+                                    "Walks through an occupancy map: by bricks, 3D or 2D DDA")
         .input("occupancy", PortKind::Buffer, "Occupancy map")
         .carries(content::elements("OccupancyWord"))
         .input("grid", PortKind::Buffer, "Where its cells lie")
         .carries(content::elements("OccupancyGrid"))
         .output("tracer", PortKind::Tracer, "Traces the exact direction through the map")
         .internal("columns", PortKind::Buffer, "The map with each column's words together, level by level")
+        .internal("bricks", PortKind::Buffer,
+                  "The map in bricks of 2 x 2 x 2 cells (shared/occupancy_bricks.h)")
+        .internal("cubes", PortKind::Buffer, "Which cubes of bricks hold anything, by size and direction")
         .internal("settings", PortKind::Buffer, "Where rays begin (shared/occupancy.h)")
         .internal("exhausted", PortKind::Buffer, "Rays traced, and those that ran out of iterations")
-        .choice("method", &OccupancyTrace::method, {"dda_3d", "dda_2d"},
-                "From cell to cell, or from column to column, testing many cells of one at once")
+        .choice("method", &OccupancyTrace::method, {"dda_3d", "dda_2d", "bricks"},
+                "From cell to cell; from column to column, testing many cells of one at once; or from brick "
+                "of 2 x 2 x "
+                "2 cells to brick, over empty cubes of them at once")
         .flag("mips", &OccupancyTrace::mips,
               "Column by column over a hierarchy of unions of 2 x 2 columns, leaving empty ones at once")
         .number("iterations", &OccupancyTrace::iterations, 1, 2048, "steps",
@@ -53,7 +63,8 @@ Declaration OccupancyTrace::declare(const World& world, const Inputs& inputs, co
     Declaration declaration;
     const std::optional<int> resolution = mapResolution(inputs, declaration);
     if (!resolution) return declaration;
-    declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Approximate)},
+    const Bits many = method == TraceMethod::Bricks ? provides::ManyRays : 0;
+    declaration.outputs = {{.port = "tracer", .desc = Desc::module(provides::Approximate | many)},
                            {.port = "settings", .desc = Desc::buffer(sizeof(shared::OccupancySettings))}};
     if (!demand.reads("tracer")) return declaration;
 
@@ -76,6 +87,8 @@ Declaration OccupancyTrace::declare(const World& world, const Inputs& inputs, co
         declaration.steps.push_back(settings);
         if (method == TraceMethod::Dda2d && mips) {
             declareColumns(world, *resolution, declaration, tracer);
+        } else if (method == TraceMethod::Bricks) {
+            declareBricks(world, inputs["occupancy"].desc, *resolution, declaration, tracer);
         } else {
             tracer.defines["METHOD"] = method == TraceMethod::Dda3d ? "0" : "1";
             const bool image = fitsTexels(inputs["occupancy"].desc, world.capabilities);
@@ -117,6 +130,49 @@ void OccupancyTrace::declareColumns(const World& world, int resolution, Declarat
         };
         declaration.steps.push_back(coarser);
     }
+}
+
+void OccupancyTrace::declareBricks(const World& world, const Desc& map, int resolution,
+                                   Declaration& declaration, Module& tracer) {
+    const int across = resolution / 2;
+    const auto n = static_cast<std::uint32_t>(across);
+    const auto rowWords = static_cast<std::uint32_t>((across + 31) / 32);
+    // Until a cube spans the map.
+    const int codes = std::min(shared::brickCodes, std::countr_zero(n) + 1);
+    const Desc bricks = Desc::buffer(std::uint64_t{4} * n * n * n, Format::R32UI);
+    const Desc cubes = Desc::buffer(
+        std::uint64_t{4} * rowWords * n * n * (1 + 8 * static_cast<std::uint64_t>(codes - 1)), Format::R32UI);
+    const bool image = fitsTexels(bricks, world.capabilities);
+    tracer.defines["METHOD"] = "3";
+    tracer.defines["BRICK_BITS"] = std::to_string(std::countr_zero(n));
+    if (!image) tracer.defines["MAP_STORAGE"] = "1";
+    tracer.uses.push_back({.port = "bricks", .access = image ? Access::Image : Access::Storage});
+    declaration.outputs.push_back({.port = "bricks", .desc = bricks});
+    declaration.outputs.push_back({.port = "cubes", .desc = cubes});
+
+    Step pack{.name = "pack",
+              .run = [=](Commands& commands) { commands.dispatchOver(rowWords * n * n); },
+              .shaders = {"occupancy/bricks.comp"},
+              .defines = {{"RESOLUTION", std::to_string(resolution)},
+                          {"BRICKS", std::to_string(across)},
+                          {"CODES", std::to_string(codes)}},
+              .group = "generation"};
+    Step grow = pack;
+    grow.name = "cubes";
+    grow.run = [](Commands& commands) { commands.dispatch(8); };
+    grow.defines.emplace("CUBES", "1");
+    grow.uses = {{.port = "cubes", .access = Access::Image, .write = true}};
+    const bool texels = fitsTexels(map, world.capabilities);
+    if (!texels) pack.defines.emplace("BASE_STORAGE", "1");
+    pack.uses = {{.port = "occupancy", .access = texels ? Access::Image : Access::Storage}};
+    Step occupied = pack;
+    occupied.name = "occupied";
+    occupied.defines.emplace("OCCUPIED", "1");
+    occupied.uses.push_back({.port = "cubes", .access = Access::Storage, .write = true});
+    pack.uses.push_back({.port = "cubes", .access = Access::Image});
+    pack.uses.push_back({.port = "bricks", .access = Access::Storage, .write = true});
+    for (Step& step : std::array{std::move(occupied), std::move(grow), std::move(pack)})
+        declaration.steps.push_back(std::move(step));
 }
 
 void OccupancyTrace::uploadSettings(Commands& commands) const {

@@ -7,10 +7,11 @@ namespace kestrel {
 
 enum class TraceMethod : std::uint8_t {
     Dda3d, // from cell to cell (Amanatides and Woo 1987)
-    Dda2d  // from column to column, testing many cells of one at once (Thiedemann et al. 2011)
+    Dda2d, // from column to column, testing many cells of one at once (Thiedemann et al. 2011)
+    Bricks // from brick of 2 x 2 x 2 cells to brick, over empty cubes of them at once
 };
 
-// Provides `tracer`: any and closest hits of exact directions, each up to a cell off (Hit::error). Both
+// Provides `tracer`: any and closest hits of exact directions, each up to a cell off (Hit::error). All
 // methods find the same cells to the bit. See shaders/occupancy/occupancy_trace.glsl.
 class OccupancyTrace final : public Pass {
 public:
@@ -31,6 +32,8 @@ public:
 private:
     void uploadSettings(Commands& commands) const;
     void declareColumns(const World& world, int resolution, Declaration& declaration, Module& tracer) const;
+    static void declareBricks(const World& world, const Desc& map, int resolution, Declaration& declaration,
+                              Module& tracer);
 };
 
 } // namespace kestrel

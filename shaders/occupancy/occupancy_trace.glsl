@@ -4,7 +4,8 @@
 //      DDA; Thiedemann et al., "Voxel-based Global Illumination", 2011); a word a step measures a sixth faster on a CPU
 //      driver than all words of the column,
 //   2: from column to column over a hierarchy: a column of a coarser level is the union of 2 x 2 columns; empty ones are left
-//      at once. Here a step tests the whole column, one texel up to 128 cells: a coarse column is passed over many cells.
+//      at once. Here a step tests the whole column, one texel up to 128 cells: a coarse column is passed over many cells,
+//   3: from brick of 2 x 2 x 2 cells to brick, and over empty cubes of them (occupancy/brick_walk.glsl).
 //
 // Rays are mirrored so that they go up along every axis. All methods visit the same cells
 // in the same order, to the bit: a plane between cells is passed at the time
@@ -34,7 +35,7 @@ void M(aim)(inout Ray ray) {}
 #include <part:lib/no_hits.glsl>
 #else
 
-#if METHOD != 2
+#if METHOD < 2
 
 #ifdef MAP_STORAGE
 layout(std430) readonly buffer M(Occupancy) { uint M(occupancy)[]; };
@@ -44,7 +45,7 @@ layout(r32ui) readonly uniform uimageBuffer M(occupancy);
 #define MAP_WORD(index) imageLoad(M(occupancy), index).x
 #endif
 
-#else
+#elif METHOD == 2
 
 #ifdef MAP_STORAGE
 layout(std430) readonly buffer M(Columns) { COLUMN_TYPE M(columns)[]; };
@@ -64,6 +65,16 @@ OccupancyColumn M(column)(ivec2 at, int level) {
 #endif
 }
 
+#else
+
+#ifdef MAP_STORAGE
+layout(std430) readonly buffer M(Bricks) { uint M(bricks)[]; };
+#define MAP_WORD(index) M(bricks)[index]
+#else
+layout(r32ui) readonly uniform uimageBuffer M(bricks);
+#define MAP_WORD(index) imageLoad(M(bricks), index).x
+#endif
+
 #endif // METHOD
 
 // The part of a ray that counts and lies within the map, in cells, mirrored. Its origin is where it begins: a ray may come
@@ -76,6 +87,12 @@ struct M(Line) {
     float start; // where the line begins along the ray
     float to;    // where it ends, from there
     bool intersects;
+#if METHOD == 3
+    // Of a brick's index and of a cell's place in it what `flip` is of a cell; and the bit where the ray's codes begin.
+    int flipIndex;
+    int flipPlace;
+    int way;
+#endif
 };
 
 M(Line) M(line)(Ray ray) {
@@ -93,6 +110,12 @@ M(Line) M(line)(Ray ray) {
     line.intersects = from <= to;
     line.start = line.intersects ? from : 0.0;
     line.to = line.intersects ? to - from : -1.0;
+#if METHOD == 3
+    ivec3 flipBrick = line.flip >> 1;
+    line.flipIndex = flipBrick.y << (2 * BRICK_BITS) | flipBrick.x << BRICK_BITS | flipBrick.z;
+    line.flipPlace = int(down.x) | int(down.y) << 1 | int(down.z) << 2;
+    line.way = 8 + 3 * line.flipPlace;
+#endif
     line.origin = clamp(origin + line.start * line.direction, vec3(0.0), vec3(RESOLUTION));
     return line;
 }
@@ -132,6 +155,10 @@ OccupancyColumn M(cells)(M(Line) line, ivec2 block, int level, int first, int la
 
 #endif
 
+#if METHOD == 3
+#include <part:occupancy/brick_walk.glsl>
+#endif
+
 // The first occupied cell of the line, mirrored; false if there is none.
 bool M(walk)(M(Line) line, out ivec3 cell) {
     ivec3 at = min(ivec3(line.origin), ivec3(RESOLUTION - 1));
@@ -162,7 +189,7 @@ bool M(walk)(M(Line) line, out ivec3 cell) {
             bool alongX = next.x <= next.y;
             ivec3 onward = ivec3(at.xy + ivec2(!more && alongX, !more && !alongX), last + int(more));
             leave = more ? 0.0 : leave;
-#else
+#elif METHOD == 2
             ivec2 block = at.xy >> level;
             ivec2 planes = (block + 1) << level;
             vec2 next = (vec2(planes) - line.origin.xy) * line.inverse.xy;
@@ -184,9 +211,12 @@ bool M(walk)(M(Line) line, out ivec3 cell) {
             ivec2 changed = (onward.xy >> level) ^ block;
             int coarser = min(level + int((changed.x | changed.y) > 1), TOP_LEVEL);
             level = found ? level : coarser;
+#else
+            ivec3 onward;
+            float leave = M(brickStep)(line, at, found, onward);
 #endif
-            // Cells of the map are smaller than RESOLUTION, a power of two, and no walk goes farther than one beyond.
-            bool outside = ((onward.x | onward.y | onward.z) & RESOLUTION) != 0;
+            // Cells of the map are smaller than RESOLUTION, a power of two.
+            bool outside = (onward.x | onward.y | onward.z) >= RESOLUTION;
             if (found || leave > line.to || outside) {
                 finished = true;
                 break;
@@ -212,6 +242,10 @@ bool M(anyHit)(Ray ray) {
     ivec3 cell;
     return M(walk)(M(line)(ray), cell);
 }
+
+#ifdef REQUESTS_MANY
+#include <part:occupancy/brick_rays.glsl>
+#endif
 
 bool M(closestHit)(Ray ray, out Hit hit) {
     hit = noHit;

@@ -9,9 +9,9 @@ namespace {
 using OccupancyTraceGl = GlTest;
 
 const std::vector<std::string> walks = {R"("method": "dda_3d")", R"("method": "dda_2d", "mips": false)",
-                                        R"("method": "dda_2d", "mips": true)"};
+                                        R"("method": "dda_2d", "mips": true)", R"("method": "bricks")"};
 
-// RaySource::rays through MapSource's map by each of the three walks.
+// RaySource::rays through MapSource's map by each of the walks.
 Renderer walkRenderer(const std::string& properties, const std::string& query) {
     std::string passes = R"("map": {"type": "MapSource"}, "rays": {"type": "RaySource"})", edges, outputs;
     for (size_t i = 0; i < walks.size(); ++i) {
@@ -102,7 +102,7 @@ std::vector<glm::ivec3> mapCells() {
     return cells;
 }
 
-// Hits of the three walks agree in every bit; how many there are.
+// Hits of the walks agree in every bit; how many there are.
 int expectSameHits(const std::vector<std::vector<shared::HitRecord>>& closest,
                    const std::vector<std::vector<shared::HitRecord>>& any, const std::string& what) {
     int hitCount = 0;
@@ -129,10 +129,17 @@ TEST_F(OccupancyTraceGl, EveryMethodFindsTheSameCellsToTheBit) {
             for (const bool border : {false, true}) {
                 RaySource::rays = border ? borderRays(n, 20'000, 5) : raysAround(20'000, reach, 3);
                 const std::string properties = R"("offset": 1.25, "skip": 0.75)";
-                const int hits = expectSameHits(walked(properties, R"("query": "closest")"),
-                                                walked(properties, R"("query": "any")"),
+                const auto closest = walked(properties, R"("query": "closest")");
+                const int hits = expectSameHits(closest, walked(properties, R"("query": "any")"),
                                                 fmt::format("n {} share {} border {}", n, share, border));
                 EXPECT_GE(hits, share > 0 ? 500 : 0) << n;
+                RaySource::texels = true;
+                const auto many = walked(properties, R"("query": "any")");
+                RaySource::texels = false;
+                for (size_t walk = 0; walk < walks.size(); ++walk)
+                    for (size_t i = 0; i < RaySource::rays.size(); ++i)
+                        ASSERT_EQ(std::isinf(many[walk][i].t), std::isinf(closest[0][i].t))
+                            << walks[walk] << " ray " << i << " of many";
             }
         }
     }
@@ -209,16 +216,20 @@ TEST_F(OccupancyTraceGl, CountsExhaustedRays) {
     MapSource::begin(64);
     MapSource::mark({63, 32, 32});
     RaySource::rays.assign(50, rayRecord({-0.9f, 0.01f, 0.02f}, {1, 0.001f, 0.002f}));
-    for (const auto& [iterations, exhausted] : {std::pair(1, 50.0), std::pair(256, 0.0)}) {
+    for (const auto& [iterations, exhausted, many] :
+         {std::tuple(1, 50.0, false), std::tuple(256, 0.0, false), std::tuple(1, 50.0, true),
+          std::tuple(256, 0.0, true)}) {
+        RaySource::texels = many;
         Renderer renderer = walkRenderer(
             fmt::format(R"("count_exhausted": true, "iterations": {})", iterations), R"("query": "any")");
         renderer.frame();
         const auto& values = renderer.frame().values;
-        for (const char* walk : {"walk0", "walk1", "walk2"}) {
+        for (const char* walk : {"walk0", "walk1", "walk2", "walk3"}) {
             EXPECT_EQ(values.at(walk).at("rays"), 50.0);
             EXPECT_EQ(values.at(walk).at("exhausted rays"), exhausted) << walk;
         }
     }
+    RaySource::texels = false;
 }
 
 // The scene's own map: scale does not matter, and an empty scene is left out.

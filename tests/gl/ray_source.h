@@ -16,10 +16,12 @@ public:
             .carries(content::elements("RayRecord"));
     }
     static inline std::vector<shared::RayRecord> rays;
+    static inline bool texels = false; // as those who trace many rays an invocation read them
     [[nodiscard]] Declaration declare(const World&, const Inputs&, const Demand&) const override {
         Declaration declaration;
-        declaration.outputs = {
-            {.port = "rays", .desc = Desc::buffer(rays.size() * sizeof(shared::RayRecord))}};
+        declaration.outputs = {{.port = "rays",
+                                .desc = Desc::buffer(rays.size() * sizeof(shared::RayRecord),
+                                                     texels ? Format::RGBA32UI : Format::None)}};
         declaration.steps = {
             {.name = "upload", .uses = {{.port = "rays", .access = Access::Copy, .write = true}}}};
         declaration.depends = Causes::Frame;
