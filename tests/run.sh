@@ -103,7 +103,6 @@ sanitize)
         xargs -0 -P "$(nproc)" -I PROGRAM bash -c 'check "$@"' check PROGRAM "$@"
     ;;
 sanitize_gl)
-    # A driver's library that is gone when leaks are told has no name to be left out by: drivers stay loaded.
     build "$root/build-sanitize" -DKESTREL_CONFIG=sanitize -DKESTREL_UNITY=ON -DKESTREL_PCH=ON
     export UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$root/tests/sanitize.supp:print_suppressions=0
     [ $# -gt 0 ] || set -- -LE unit -E "$slow|$long"

@@ -4,6 +4,12 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#ifdef KESTREL_SANITIZE
+#include <dlfcn.h>
+#include <link.h>
+#include <string>
+#include <vector>
+#endif
 #endif
 
 namespace kestrel::gl {
@@ -24,6 +30,22 @@ std::string glfwReason() {
     glfwGetError(&text);
     return text == nullptr ? "no reason given" : text;
 }
+
+#ifdef KESTREL_SANITIZE
+// What libraries leak is left out by their names (tests/sanitize.supp), which nobody knows once they are
+// gone: GLFW lets go of the window system's, and with them of the driver.
+void keepLibraries() {
+    std::vector<std::string> names;
+    dl_iterate_phdr(
+        [](dl_phdr_info* info, std::size_t, void* to) {
+            static_cast<std::vector<std::string>*>(to)->emplace_back(info->dlpi_name);
+            return 0;
+        },
+        &names);
+    for (const std::string& name : names)
+        if (!name.empty()) dlopen(name.c_str(), RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
+}
+#endif
 
 class WindowContext final : public Context {
 public:
@@ -49,6 +71,9 @@ public:
         }
         try {
             finishCreation(glfwGetProcAddress, options.debug);
+#ifdef KESTREL_SANITIZE
+            keepLibraries();
+#endif
         } catch (...) {
             close();
             throw;

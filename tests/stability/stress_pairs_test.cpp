@@ -54,6 +54,17 @@ TEST_P(StressPairs, Hold) {
     }
 }
 
+// Paths are counted in the alpha of a colour, anew after a cut: the colour recovers, the count is another.
+TEST_F(ShippedTest, StressComparesTheChannelsThatAPortStates) {
+    const Graph graph = lightened(shippedGraph("path_trace"), 64, 4);
+    StressRunner runner(graph, loadScene(lightScene(graph.sceneSource)), shipped(), context().capabilities(),
+                        {.size = {32, 18, 1}});
+    const auto cut = std::ranges::find(stressCases(), "time/cut", &StressCase::name);
+    ASSERT_NE(cut, stressCases().end());
+    const StressResult result = runner.run(*cut);
+    EXPECT_FALSE(isBad(result.outcome)) << stressText(result);
+}
+
 INSTANTIATE_TEST_SUITE_P(Graphs, StressPairs, ::testing::ValuesIn(shippedGraphNames()),
                          [](const auto& of) { return of.param; });
 

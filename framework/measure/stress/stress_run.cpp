@@ -103,7 +103,13 @@ StressRunner::Pictures StressRunner::read(Renderer& renderer) const {
         if (output.preview || output.resource < 0 || !isComparable(portInfo(output.port))) continue;
         const Desc& desc = renderer.desc(output.port);
         if (desc.kind != ResourceKind::Texture2D || formatInfo(desc.format).depth) continue;
-        pictures.emplace(output.port.text(), renderer.read(output.port));
+        Image picture = renderer.read(output.port);
+        // What a port says that it carries: a fourth channel beside a colour may count its samples, and they
+        // differ.
+        const PortInfo* info = portInfo(output.port);
+        const int channels = info != nullptr ? info->content.channels : 0;
+        if (channels > 1 && channels < picture.channels) picture = convertChannels(picture, channels);
+        pictures.emplace(output.port.text(), std::move(picture));
     }
     return pictures;
 }
