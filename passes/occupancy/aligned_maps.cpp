@@ -63,16 +63,26 @@ Step rotateStep(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
     return step;
 }
 
+namespace {
+
+// One cell in 32: more than are ever worth scattering (shaders/occupancy/occupied_cells.comp).
+std::uint64_t listedCells(int resolution) { return 8 * occupancyBytes(resolution) / 32; }
+
+std::uint64_t listBytes(int resolution) {
+    return sizeof(shared::OccupiedCellsHeader) + 4 * listedCells(resolution);
+}
+
+} // namespace
+
 Desc occupiedCellsDesc(const AlignedMaps& maps) {
-    // One cell in 32: more than are ever worth scattering (shaders/occupancy/occupied_cells.comp).
-    const std::uint64_t cells = 8 * occupancyBytes(maps.resolution) / 32;
-    return Desc::buffer(sizeof(shared::OccupiedCellsHeader) + 4 * cells);
+    return Desc::buffer(listBytes(maps.resolution) * static_cast<std::uint64_t>(maps.levels));
 }
 
 ScatterSteps scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
                           const Capabilities& capabilities) {
     Step rotate = rotateStep(maps, occupancy, inTurn, capabilities);
-    const Use base = rotate.uses.front();
+    rotate.defines["CELLS"] = std::to_string(listedCells(maps.resolution));
+    const Use base = rotate.uses[0], grid = rotate.uses[1];
     const Use cells{.port = "cells", .access = Access::Storage};
     const Use written{.port = "cells", .access = Access::Storage, .write = true};
     const Use groups{.port = "cells", .access = Access::Indirect};
@@ -86,7 +96,7 @@ ScatterSteps scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool i
     Step choose = list;
     choose.name = "choose";
     choose.defines.emplace("CHOOSE", "1");
-    choose.uses = {{.port = "grid", .access = Access::Uniform}, written};
+    choose.uses = {grid, written};
     Step scatter = rotate;
     scatter.name = "scatter";
     scatter.shaders = {"occupancy/scatter.comp"};
@@ -99,7 +109,10 @@ ScatterSteps scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool i
     return {std::move(list), std::move(choose), std::move(blank), std::move(scatter), std::move(rotate)};
 }
 
-void clearOccupiedCells(Commands& commands) { commands.uploadValue("cells", shared::OccupiedCellsHeader{}); }
+void clearOccupiedCells(int resolution, int level, Commands& commands) {
+    commands.upload("cells", std::vector{shared::OccupiedCellsHeader{}},
+                    listBytes(resolution) * static_cast<std::uint64_t>(level));
+}
 
 namespace {
 
@@ -119,12 +132,15 @@ void chooseRotation(const Renewal& renewal, Commands& commands) {
     commands.dispatch(1);
 }
 
-void dispatchChosen(RotationPart part, const AlignedMaps& maps, const Renewal* renewal, Commands& commands) {
+void dispatchChosen(RotationPart part, const AlignedMaps& maps, int level, const Renewal* renewal,
+                    Commands& commands) {
     using Header = shared::OccupiedCellsHeader;
     if (renewal != nullptr) setTurn(maps, *renewal, commands);
-    commands.dispatchIndirect("cells", part == RotationPart::Blank     ? offsetof(Header, blank)
-                                       : part == RotationPart::Scatter ? offsetof(Header, scatter)
-                                                                       : offsetof(Header, rotate));
+    const std::uint64_t groups = part == RotationPart::Blank     ? offsetof(Header, blank)
+                                 : part == RotationPart::Scatter ? offsetof(Header, scatter)
+                                                                 : offsetof(Header, rotate);
+    commands.dispatchIndirect("cells",
+                              groups + listBytes(maps.resolution) * static_cast<std::uint64_t>(level));
 }
 
 void dispatchRotation(const AlignedMaps& maps, const Renewal& renewal, bool inTurn, Commands& commands) {

@@ -8,6 +8,10 @@ namespace kestrel {
 
 class Commands;
 
+// How the rotated maps are made, with the same bits: `Automatic` from the occupied cells alone where these
+// are few.
+enum class RotationMethod : std::uint8_t { Automatic, Gather };
+
 struct AlignedMaps {
     int resolution = 0, directions = 0;
     int levels = 1; // base maps one after the other in a buffer, and the arrays made of them likewise
@@ -28,25 +32,26 @@ AlignedMaps alignedMaps(int resolution, int angular, int levels, const Capabilit
 Step rotateStep(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
                 const Capabilities& capabilities);
 
-// Instead of rotateStep(): lists the occupied cells of the one base map in "cells", and where they are few
-// makes the maps from them alone (shaders/occupancy/scatter.comp). In this order; `blank` is needed in turn
-// only, else "maps" was cleared before. What they run is up to the pass:
+// Instead of rotateStep(): lists the occupied cells of a level's base map in "cells", and where they are few
+// makes its maps from them alone (shaders/occupancy/scatter.comp). In this order; `blank` is needed where
+// "maps" was not cleared before. What they run, after the level was set, is up to the pass:
 struct ScatterSteps {
     Step list, choose, blank, scatter, rotate;
 };
 ScatterSteps scatterSteps(const AlignedMaps& maps, const Desc& occupancy, bool inTurn,
                           const Capabilities& capabilities);
-// Of "cells": room for as many as make scattering faster than visiting every cell.
+// Of "cells": room for as many of each level as make scattering faster than visiting every cell.
 Desc occupiedCellsDesc(const AlignedMaps& maps);
 // In the step before `list`.
-void clearOccupiedCells(Commands& commands);
+void clearOccupiedCells(int resolution, int level, Commands& commands);
 // In `list`: needed only where the base map has changed.
 void listOccupiedCells(int resolution, Commands& commands);
 // In `choose`: only where the list or the number of maps to make has changed.
 void chooseRotation(const Renewal& renewal, Commands& commands);
 // In the others. `renewal`: in turn, else null.
 enum class RotationPart { Blank, Scatter, Rotate };
-void dispatchChosen(RotationPart part, const AlignedMaps& maps, const Renewal* renewal, Commands& commands);
+void dispatchChosen(RotationPart part, const AlignedMaps& maps, int level, const Renewal* renewal,
+                    Commands& commands);
 
 // In the step that rotateStep() made: all maps, or those of the renewal in turn.
 void dispatchRotation(const AlignedMaps& maps, const Renewal& renewal, bool inTurn, Commands& commands);

@@ -125,7 +125,7 @@ void Roma::choose(Commands& commands) const {
 }
 
 void Roma::rotateChosen(Commands& commands, RotationPart part, const AlignedMaps& maps, bool inTurn) const {
-    dispatchChosen(part, maps, inTurn ? &renewal_ : nullptr, commands);
+    dispatchChosen(part, maps, 0, inTurn ? &renewal_ : nullptr, commands);
 }
 
 void Roma::upload(Commands& commands) {
@@ -136,7 +136,7 @@ void Roma::upload(Commands& commands) {
     renewal_ =
         candidates_.draw(angular, resample ? refresh : 0, changed_, resample ? frame.index : 0, frame.seed);
     uploadCandidates(candidates_, offset, skip, commands);
-    if (changed_ && commands.uses("cells")) clearOccupiedCells(commands);
+    if (changed_ && commands.uses("cells")) clearOccupiedCells(0, 0, commands);
     if (commands.uses("exhausted")) exhaustion::clear(commands);
 }
 

@@ -8,10 +8,6 @@
 
 namespace kestrel {
 
-// How the rotated maps are made, with the same bits: `Automatic` from the occupied cells alone where these
-// are few.
-enum class RotationMethod : std::uint8_t { Automatic, Gather };
-
 // Rotates an occupancy map towards angular^2 candidate directions (section 4.1) and traces through them
 // (4.2).
 class Roma final : public Pass {

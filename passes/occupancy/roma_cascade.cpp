@@ -43,6 +43,7 @@ PassType RomaCascade::type() {
         .internal("grids", PortKind::Buffer, "Where their cells lie")
         .internal("large", PortKind::Buffer, "Triangles over many cells, and the work groups that mark them")
         .internal("maps", PortKind::Buffer, "The rotated maps, level by level")
+        .internal("cells", PortKind::Buffer, "The occupied cells of the base maps")
         .internal("directions", PortKind::Buffer, "The candidate directions and their strata")
         .internal("rotations", PortKind::Buffer, "The rotated maps' axes in fixed point")
         .internal("exhausted", PortKind::Buffer,
@@ -65,6 +66,10 @@ PassType RomaCascade::type() {
               "New candidate directions every frame; otherwise those of frame 0")
         .number("refresh", &RomaCascade::refresh, 0, 256, "maps",
                 "How many maps of a level a frame renews, in turn, while the level stays as it is; 0: all")
+        .choice(
+            "rotation", &RomaCascade::rotation, {"automatic", "gather"},
+            "How maps are made: by visiting all of their cells, or from the occupied cells alone where these "
+            "are few")
         .flag("count_exhausted", &RomaCascade::countExhausted,
               "Counts the rays that ran out of iterations and reports them with the next frame");
 }
@@ -111,8 +116,8 @@ Declaration RomaCascade::declare(const World& world, const Inputs&, const Demand
     return declaration;
 }
 
-// The steps: "begin", then "clear", "triangles", "large_triangles" and "rotate" of each level, with its
-// number.
+// The steps: "begin", then "clear", "triangles", "large_triangles" and those of the rotation of each level,
+// with its number.
 void RomaCascade::declareMaps(const World& world, Declaration& declaration, Module& tracer,
                               Step& begin) const {
     const AlignedMaps maps = alignedMaps(resolution, angular, levels, world.capabilities, declaration);
@@ -125,6 +130,11 @@ void RomaCascade::declareMaps(const World& world, Declaration& declaration, Modu
     declaration.outputs.push_back({.port = "large", .desc = largeTrianglesDesc(world)});
     addMapUses(maps, world.capabilities, tracer);
     begin.uses.push_back({.port = "rotations", .access = Access::Copy, .write = true});
+    const bool lists = rotation == RotationMethod::Automatic;
+    if (lists) {
+        declaration.outputs.push_back({.port = "cells", .desc = occupiedCellsDesc(maps), .keeps = true});
+        begin.uses.push_back({.port = "cells", .access = Access::Copy, .write = true});
+    }
     if (countExhausted) exhaustion::declare(declaration, tracer, begin);
     declaration.steps.push_back(begin);
 
@@ -137,6 +147,7 @@ void RomaCascade::declareMaps(const World& world, Declaration& declaration, Modu
                      .group = "generation"};
     const std::vector<Step> marking = exactSteps(world, resolution);
     const Step rotate = rotateStep(maps, occupancy, inTurn, world.capabilities);
+    const ScatterSteps scatter = scatterSteps(maps, occupancy, inTurn, world.capabilities);
     for (int level = 0; level < levels; ++level) {
         const auto add = [&](Step step, StepRun run) {
             step.name += fmt::format("_{}", level);
@@ -150,7 +161,15 @@ void RomaCascade::declareMaps(const World& world, Declaration& declaration, Modu
             const StepRun run = step.run;
             add(std::move(step), {&RomaCascade::markLevel, level, run});
         }
-        add(rotate, {&RomaCascade::rotateLevel, level, maps, inTurn});
+        if (!lists) {
+            add(rotate, {&RomaCascade::rotateLevel, level, maps, inTurn});
+            continue;
+        }
+        add(scatter.list, {&RomaCascade::listLevel, level});
+        add(scatter.choose, {&RomaCascade::chooseLevel, level});
+        add(scatter.blank, {&RomaCascade::rotateChosen, level, RotationPart::Blank, maps, inTurn});
+        add(scatter.scatter, {&RomaCascade::rotateChosen, level, RotationPart::Scatter, maps, inTurn});
+        add(scatter.rotate, {&RomaCascade::rotateChosen, level, RotationPart::Rotate, maps, inTurn});
     }
     declaration.depends |= Causes::Geometry | Causes::Transforms;
     if (world.facts.hasMasked)
@@ -161,6 +180,9 @@ void RomaCascade::declareMaps(const World& world, Declaration& declaration, Modu
 
 void RomaCascade::begin(Commands& commands) {
     const FrameInfo& frame = commands.frame();
+    countBefore_.resize(static_cast<size_t>(levels));
+    for (size_t i = 0; i < stale_.size() && i < countBefore_.size(); ++i)
+        countBefore_[i] = renewalOf(static_cast<int>(i)).count;
     const bool changed = any(commands.causes() & ~(Causes::Frame | Causes::Camera | Causes::Cut));
     std::vector<shared::OccupancyGrid> grids =
         cascadeGrids(commands.facts(), frame.cameraState.position, levels, ratio, resolution);
@@ -172,6 +194,9 @@ void RomaCascade::begin(Commands& commands) {
     renewal_ =
         candidates_.draw(angular, resample ? refresh : 0, changed, resample ? frame.index : 0, frame.seed);
     uploadCandidates(candidates_, offset, skip, commands);
+    if (commands.uses("cells"))
+        for (int level = 0; level < levels; ++level)
+            if (isStale(level)) clearOccupiedCells(resolution, level, commands);
     if (commands.uses("exhausted")) exhaustion::clear(commands);
     commands.report("levels marked", static_cast<double>(std::count(stale_.begin(), stale_.end(), true)));
 }
@@ -189,12 +214,34 @@ void RomaCascade::markLevel(Commands& commands, int level, const StepRun& markin
     if (isStale(level)) marking(*this, commands);
 }
 
+Renewal RomaCascade::renewalOf(int level) const {
+    if (isStale(level)) return {0, angular * angular};
+    return resample ? renewal_ : Renewal{};
+}
+
 void RomaCascade::rotateLevel(Commands& commands, int level, const AlignedMaps& maps, bool inTurn) const {
     commands.set("level", level);
-    if (isStale(level))
-        dispatchRotation(maps, {0, maps.directions}, inTurn, commands);
-    else if (resample)
-        dispatchRotation(maps, renewal_, inTurn, commands);
+    if (const Renewal renewal = renewalOf(level); renewal.count > 0)
+        dispatchRotation(maps, renewal, inTurn, commands);
+}
+
+void RomaCascade::listLevel(Commands& commands, int level) const {
+    commands.set("level", level);
+    if (isStale(level)) listOccupiedCells(resolution, commands);
+}
+
+void RomaCascade::chooseLevel(Commands& commands, int level) const {
+    commands.set("level", level);
+    const Renewal renewal = renewalOf(level);
+    if (isStale(level) || renewal.count != countBefore_.at(static_cast<size_t>(level)))
+        chooseRotation(renewal, commands);
+}
+
+void RomaCascade::rotateChosen(Commands& commands, int level, RotationPart part, const AlignedMaps& maps,
+                               bool inTurn) const {
+    commands.set("level", level);
+    if (const Renewal renewal = renewalOf(level); renewal.count > 0)
+        dispatchChosen(part, maps, level, inTurn ? &renewal : nullptr, commands);
 }
 
 } // namespace kestrel

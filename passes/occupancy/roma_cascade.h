@@ -28,6 +28,7 @@ public:
     float skip = 2;
     bool resample = true;
     int refresh = 0;
+    RotationMethod rotation = RotationMethod::Automatic;
     bool countExhausted = false;
 
 private:
@@ -36,10 +37,17 @@ private:
     void begin(Commands& commands);
     void clearLevel(Commands& commands, int level) const;
     void markLevel(Commands& commands, int level, const StepRun& marking);
+    // Of a level, which maps this frame makes anew.
+    [[nodiscard]] Renewal renewalOf(int level) const;
     void rotateLevel(Commands& commands, int level, const AlignedMaps& maps, bool inTurn) const;
+    void listLevel(Commands& commands, int level) const;
+    void chooseLevel(Commands& commands, int level) const;
+    void rotateChosen(Commands& commands, int level, RotationPart part, const AlignedMaps& maps,
+                      bool inTurn) const;
 
     std::vector<shared::OccupancyGrid> grids_; // of the last frame, finest first
     std::vector<bool> stale_;                  // by level: is marked anew in this frame
+    std::vector<int> countBefore_;             // by level: maps made anew in the last frame
     Candidates candidates_;
     Renewal renewal_; // of this frame
 };

@@ -22,13 +22,7 @@ layout(std430) writeonly buffer Maps { uvec4 maps[]; };
 
 layout(std140) uniform Rotations { RomaRotation rotations[DIRECTIONS]; };
 
-#ifdef LEVELS
-layout(std140) uniform Grids { OccupancyGrid grids[LEVELS]; };
-#define GRID grids[level]
-#else
-layout(std140) uniform Grid { OccupancyGrid grid; };
-#define GRID grid
-#endif
+#include "occupancy/grids.glsl"
 
 const int strideBits = 3;
 const int stride = 1 << strideBits;

@@ -16,9 +16,12 @@ uniform int placeStride;
 uniform int level;
 #define FIRST_WORD (level * (RESOLUTION * RESOLUTION * WORDS))
 #define FIRST_MAP (level * DIRECTIONS)
+#define OWN level
 #else
+#define LEVELS 1
 #define FIRST_WORD 0
 #define FIRST_MAP 0
+#define OWN 0
 #endif
 
 const int whole = romaFractionBits;

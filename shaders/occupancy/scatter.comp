@@ -5,7 +5,6 @@
 // A turned cell's cube reaches at most half a diagonal, 0.87 cells, from its middle: along each axis of the map two centres
 // at most are that near, eight candidates in all, which exact arithmetic decides about.
 #include "occupancy/rotation.glsl"
-#include "shared/occupied_cells.h"
 
 layout(local_size_x = 64) in; // scatterGroup
 
@@ -19,10 +18,7 @@ void main() {
 #else
 layout(std140) uniform Rotations { RomaRotation rotations[DIRECTIONS]; };
 layout(std430) buffer Maps { uint maps[]; };
-layout(std430) readonly buffer Cells {
-    OccupiedCellsHeader header;
-    uint cells[];
-} list;
+#include "occupancy/cell_lists.glsl"
 
 void main() {
     int map = MAP(int(gl_GlobalInvocationID.y));
@@ -45,8 +41,8 @@ void main() {
     ivec3 first[scatterCells];
     uint at = gl_WorkGroupID.x * (scatterGroup * scatterCells) + gl_LocalInvocationID.x;
     for (uint i = 0u; i < scatterCells; ++i, at += scatterGroup) {
-        bool exists = at < list.header.count;
-        ivec3 cell = unpackCell(exists ? list.cells[at] : 0u);
+        bool exists = at < LIST.header.count;
+        ivec3 cell = unpackCell(exists ? LIST.cells[at] : 0u);
         vec3 centred = vec3(cell) + (0.5 - float(RESOLUTION / 2));
         vec3 turned = vec3(dot(centred, axisX), dot(centred, axisY), dot(centred, axisZ)) + (float(RESOLUTION / 2) - 0.5);
         first[i] = ivec3(ceil(turned - reach));

@@ -5,7 +5,9 @@
 #include "passes/occupancy_oracle.h"
 #include "scene/bvh_trace.h"
 #include "scene/geometry.h"
+#include "shared/occupied_cells.h"
 #include <fmt/format.h>
+#include <list>
 
 namespace kestrel::test {
 namespace {
@@ -117,6 +119,46 @@ TEST_F(OccupancyCascade, LevelsAreMarkedAndRotatedWhereTheCameraIs) {
         renderer.frame();
         EXPECT_EQ(marked(), levels - 1) << "the coarsest lies around the scene";
         expectLevels(renderer, scene);
+    }
+}
+
+// From the occupied cells alone, or by visiting all: the same maps to the bit, while the camera moves and
+// maps are renewed in turn.
+TEST_F(OccupancyCascade, ScatteredMapsAreTheGatheredOnes) {
+    RaySource::rays = raysAround(10, 1, 9);
+    const Scene scene = sceneOf(randomTriangles(12, 1));
+    for (const int refresh : {0, 5}) {
+        std::list<Renderer> renderers; // which do not move
+        for (const char* rotation : {"automatic", "gather"}) {
+            RenderOptions options = cascadePreviews();
+            if (renderers.empty()) options.previews.push_back({"map", "cells"});
+            renderers.emplace_back(
+                cascadeGraph(fmt::format(R"("levels": 3, "resolution": 64, "refresh": {}, "rotation": "{}")",
+                                         refresh, rotation),
+                             R"("snap": true)"),
+                registry(), scene, context().capabilities(), options);
+        }
+        for (const glm::vec3& camera :
+             {glm::vec3(0.3f, -0.2f, 0.1f), glm::vec3(0.3f, -0.2f, 0.1f), glm::vec3(0.31f, -0.2f, 0.1f),
+              glm::vec3(-0.5f, 0.4f, 0.2f), glm::vec3(-0.5f, 0.4f, 0.2f)}) {
+            std::vector<std::vector<std::uint32_t>> maps;
+            for (Renderer& renderer : renderers) {
+                lookFrom(renderer, camera);
+                renderer.frame();
+                maps.push_back(wordsOf(renderer, {"map", "maps"}));
+            }
+            EXPECT_GT(setBits(maps[0]), 1000u);
+            ASSERT_EQ(maps[0], maps[1]) << "refresh " << refresh;
+        }
+        // That something was scattered at all.
+        const std::vector<std::byte> cells = renderers.front().readBytes({"map", "cells"});
+        for (size_t level = 0; level < 3; ++level) {
+            shared::OccupiedCellsHeader header{};
+            std::memcpy(&header, cells.data() + level * cells.size() / 3, sizeof(header));
+            EXPECT_GT(header.count, 0u);
+            EXPECT_GT(header.scatter.x, 0u) << "level " << level;
+            EXPECT_EQ(header.rotate.x, 0u);
+        }
     }
 }
 
