@@ -410,7 +410,7 @@ def test_lists_what_it_would_measure():
 
 def test_the_sweeps_of_the_paper_come_with_it():
     names = [sweep.stem for sweep in (SOURCE / "graphs" / "sweeps").glob("*.json")]
-    for name in ["ambient_occlusion", "antialiasing", "denoising", "glossy", "indirect", "large_scene", "refresh",
+    for name in ["ambient_occlusion", "antialiasing", "denoising", "glossy", "indirect", "large_scene", "leaks", "refresh",
                  "roma_table2", "snap", "soft_shadow", "subdivision"]:
         assert name in names, name
 

@@ -1,6 +1,7 @@
 // Walking through an occupancy map: every method finds the same cells to the bit, and those that brute force
 // finds.
 #include "gl/occupancy_fixture.h"
+#include "scene/scene.h"
 #include <fmt/format.h>
 
 namespace kestrel::test {
@@ -259,6 +260,48 @@ TEST_F(OccupancyTraceGl, WorksAtAnyScaleAndWithoutAScene) {
         EXPECT_GT(hits, 30);
     }
     for (const shared::HitRecord& hit : traced(emptyScene())) EXPECT_TRUE(std::isinf(hit.t));
+}
+
+// From the inner sides of a sealed room with walls of one cell and more, at most one ray in a hundred gets
+// out: where all cells that the walls touch are marked, and rays start as they do by default.
+TEST_F(OccupancyTraceGl, WallsOfACellHoldTheRays) {
+    const glm::dquat turned(glm::dvec3(0.3, 0.5, 0.2)); // as the scene is
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (const int tenths : {10, 15, 20, 30}) {
+        const double within = 1 - 0.1 * tenths * 2 * std::sqrt(3.0) / 126;
+        RaySource::rays.clear();
+        for (int i = 0; i < 20'000; ++i) {
+            glm::dvec3 point = within * glm::dvec3(unit(random), unit(random), unit(random));
+            glm::dvec3 normal(0), direction(unit(random), unit(random), unit(random));
+            const double side = i % 2 == 0 ? 1 : -1;
+            normal[i % 3] = -side;
+            point[i % 3] = side * within;
+            direction[i % 3] = -side * std::abs(direction[i % 3]);
+            RaySource::rays.push_back(rayRecord(glm::vec3(turned * point), glm::vec3(turned * direction), 0,
+                                                std::numeric_limits<float>::infinity(),
+                                                glm::vec3(turned * normal)));
+        }
+        const Graph graph = parseGraph(R"({"kestrel": 1, "passes": {
+                "map": {"type": "OccupancyMap", "properties": {"method": "exact"}},
+                "walk": {"type": "OccupancyTrace"}, "roma": {"type": "Roma"}, "rays": {"type": "RaySource"},
+                "walked": {"type": "RayQuery"}, "snapped": {"type": "RayQuery", "properties": {"snap": true}}},
+            "edges": [["map.occupancy", "walk.occupancy"], ["map.grid", "walk.grid"],
+                      ["map.occupancy", "roma.occupancy"], ["map.grid", "roma.grid"],
+                      ["rays.rays", "walked.rays"], ["walk.tracer", "walked.tracer"],
+                      ["rays.rays", "snapped.rays"], ["roma.tracer", "snapped.tracer"]],
+            "outputs": ["walked.hits", "snapped.hits"]})",
+                                       "test.json");
+        Renderer renderer(graph, registry(), loadScene(fmt::format("builtin:stress_sealed?count={}", tenths)),
+                          context().capabilities(), smallFrame());
+        renderer.frame();
+        for (const char* query : {"walked", "snapped"}) {
+            int leaks = 0;
+            for (const shared::HitRecord& hit : as<shared::HitRecord>(renderer.readBytes({query, "hits"})))
+                leaks += std::isinf(hit.t) && hit.weight > 0;
+            EXPECT_LE(leaks, 200) << query << " through walls of " << tenths << " tenths of a cell";
+        }
+    }
 }
 
 } // namespace

@@ -223,6 +223,26 @@ Scene furnace(int) {
     return std::move(b.scene);
 }
 
+// A closed room whose walls are `count` tenths of a cell thick, of an occupancy map of 128 cells an edge
+// about it: what is seen of the outside from within has leaked. Turned, so that no wall lies along the cells.
+Scene sealed(int count) {
+    SceneBuilder b;
+    const float cell = 2 * std::sqrt(3.0f) / 126;
+    const float within = 1 - 0.1f * static_cast<float>(count) * cell;
+    const int grey = b.add(matte("grey", glm::vec3(0.7f)));
+    const glm::dquat turned(glm::dvec3(0.3, 0.5, 0.2));
+    Primitive outside;
+    addBox(outside, glm::mat4(1), glm::vec3(1));
+    b.addInstance("outside", b.addMesh("outside", std::move(outside), grey), glm::dvec3(0), turned);
+    b.addInstance(
+        "inside",
+        b.add(roomMesh(glm::vec3(-within), glm::vec3(within), {grey, grey, grey, grey, grey, grey})),
+        glm::dvec3(0), turned);
+    b.addCamera("inside", turned * glm::dvec3(0.7, 0.6, 0.8), turned * glm::dvec3(-0.6, -0.7, -0.8), 75,
+                0.02f, 10);
+    return std::move(b.scene);
+}
+
 constexpr StressScene scenes[] = {
     {"empty", "No triangle", empty, 0, 0},
     {"one", "One triangle", one, 0, 0},
@@ -242,6 +262,7 @@ constexpr StressScene scenes[] = {
     {"bucket", "Squares within a hundred thousandth of the depth, and one far behind", bucket, 64, 10'000},
     {"equal", "Squares at one depth", equal, 32, 10'000},
     {"furnace", "A closed room that shines with radiance 1 and reflects half", furnace, 0, 0},
+    {"sealed", "A closed room with walls as thick as tenths of a map's cell", sealed, 10, 200},
 };
 
 } // namespace
