@@ -1,6 +1,7 @@
 // Animations of a glTF file.
 #include "scene/gltf_context.h"
 #include "scene/gltf_schema.h"
+#include <algorithm>
 #include <fmt/format.h>
 #include <map>
 #include <optional>
@@ -99,12 +100,18 @@ void readGltfAnimations(GltfContext& context) {
     std::set<std::pair<int, AnimatedPath>> driven;
     for (size_t i = 0; i < context.model.animations.size(); ++i) {
         const tinygltf::Animation& source = context.model.animations[i];
-        // tinygltf drops channels without a node, whose target is told by an extension.
-        if (source.channels.size() < context.file.document["animations"][i]["channels"].size())
+        // The target of a channel without a node is told by an extension: tinygltf 2.8 drops it, 2.9 has node
+        // -1.
+        const auto hasNode = [](const tinygltf::AnimationChannel& channel) {
+            return channel.target_node >= 0;
+        };
+        if (static_cast<std::size_t>(std::ranges::count_if(source.channels, hasNode)) <
+            context.file.document["animations"][i]["channels"].size())
             context.warn("animations of what is no node are ignored");
         Animation animation;
         animation.name = source.name;
         for (size_t j = 0; j < source.channels.size(); ++j) {
+            if (!hasNode(source.channels[j])) continue;
             const std::string what = fmt::format("animations[{}].channels[{}]", i, j);
             std::optional<AnimationChannel> channel = readChannel(context, source, source.channels[j], what);
             if (!channel) continue;
