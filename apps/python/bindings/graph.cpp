@@ -21,8 +21,9 @@ namespace {
 
 // As numbers, texts and sequences come, numpy's too. Throws InputError for anything else.
 Value valueOf(const py::handle& object, const std::string& name) {
-    if (py::isinstance<py::bool_>(object) ||
-        std::string_view(Py_TYPE(object.ptr())->tp_name) == "numpy.bool_")
+    // NumPy 1 and 2 name theirs differently.
+    const std::string_view type = Py_TYPE(object.ptr())->tp_name;
+    if (py::isinstance<py::bool_>(object) || type == "numpy.bool_" || type == "numpy.bool")
         return py::bool_(py::reinterpret_borrow<py::object>(object)).cast<bool>();
     if (py::isinstance<py::str>(object)) return object.cast<std::string>();
     if (PySequence_Check(object.ptr()) != 0) {
