@@ -100,9 +100,13 @@ bool aimedRay(Point point, uint i, out Ray ray) {
 ivec2 pixelOf(uint i) { return ivec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y * uint(PIXELS) + i); }
 
 void main() {
+    ivec2 size = imageSize(visibility);
     uint wanted = 0u, inside = 0u;
     for (uint i = 0u; i < uint(PIXELS); ++i) {
-        Point point = pointAt(pixelOf(i));
+        // What is fetched from beyond an image is nobody's promise.
+        ivec2 pixel = pixelOf(i);
+        Point point = pointAt(min(pixel, size - 1));
+        point.background = point.background || any(greaterThanEqual(pixel, size));
         if (!point.background) inside |= 1u << i;
         for (uint j = 0u; j < uint(RAYS); ++j) {
             ITERATION;
@@ -120,7 +124,7 @@ void main() {
             if ((open >> k & 1u) != 0u) seen += rays[k].weight;
         }
         ivec2 pixel = pixelOf(i);
-        if (all(lessThan(pixel, imageSize(visibility)))) give(pixel, (inside >> i & 1u) == 0u, seen, sum);
+        if (all(lessThan(pixel, size))) give(pixel, (inside >> i & 1u) == 0u, seen, sum);
     }
     ITERATIONS_END;
 }

@@ -35,7 +35,7 @@ bool M(anyHit)(Ray ray) {
 }
 
 #ifdef REQUESTS_MANY
-// The far half first: it answers in constant time, and what it has met needs no exact answer.
+// The far half first: it is the cheaper one where a near half pays, and what it has met needs no exact answer.
 uint M(anyHits)(uint wanted) {
     uint hits = 0u;
     for (uint i = 0u; i < 32u && wanted >> i != 0u; ++i) {
