@@ -156,8 +156,10 @@ void Properties::showProperty(Session& session, const GraphPass& pass, const Pro
     }
     ImGui::TableNextColumn();
     ImGui::PushItemWidth(-ImGui::GetFontSize() * 6);
-    if (focus && &property == &session.registry().find(pass.type)->properties.front())
+    if (focus && &property == &session.registry().find(pass.type)->properties.front()) {
+        ImGui::SetWindowFocus(); // ImGui 1.90.1 gives the keyboard only within the window that has the focus
         ImGui::SetKeyboardFocusHere();
+    }
     Value value = propertyValue(pass, property);
     const bool changed = widget(property, value);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
