@@ -1,6 +1,7 @@
 // The scene on the GPU: triangles, materials, textures, lights, bound by the reserved names of
 // lib/scene.glsl.
 #pragma once
+#include "draw/cutouts.h"
 #include "draw/draw.h"
 #include "draw/scene_textures.h"
 #include "gl/objects.h"
@@ -45,6 +46,7 @@ private:
     void linkVertexArray();
 
     SceneTextures colours_, data_;
+    Cutouts cutouts_;
     gl::Buffer materials_, lights_;
     gl::Buffer positions_, previousPositions_, vertices_, indices_, triangles_;
     gl::VertexArray vertexArray_;

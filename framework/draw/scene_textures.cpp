@@ -78,6 +78,8 @@ std::vector<bool> unfiltered(const Scene& scene, TextureRole role) {
     return result;
 }
 
+} // namespace
+
 std::uint32_t wrapCode(Wrap wrap) {
     switch (wrap) {
     case Wrap::Repeat:
@@ -90,10 +92,10 @@ std::uint32_t wrapCode(Wrap wrap) {
     return 2;
 }
 
-} // namespace
-
 SceneTextures::SceneTextures(const Scene& scene, TextureRole role)
-    : layout_(textureArrays(scene, role)) {
+    : role_(role)
+    , layout_(textureArrays(scene, role))
+    , nearest_(unfiltered(scene, role)) {
     if (layout_.side < maxTextureSide)
         logWarning("the {} textures take {} texels, at most {} are kept: they are reduced to {} a side",
                    nameOf(role), layout_.wantedTexels, TextureLimits{}.texels, layout_.side);
@@ -111,15 +113,26 @@ SceneTextures::SceneTextures(const Scene& scene, TextureRole role)
             nameOf(role), wanted, layout_.side);
         arrays_ = makeArrays(layout_, role);
     }
-    upload(scene, role);
+    upload(scene);
     bytes_ = layout_.arrays.empty() ? 0 : bytesOf(layout_);
     if (!arrays_.empty()) return;
     arrays_.push_back(makeArray(1, 1, role));
     uploadSquare(arrays_.back().get(), {0, 0}, 1, {255, 255, 255, 255});
 }
 
-void SceneTextures::upload(const Scene& scene, TextureRole role) {
-    const std::vector<bool> nearest = unfiltered(scene, role);
+std::uint32_t SceneTextures::side(int image) const {
+    if (image < 0 || static_cast<size_t>(image) >= layout_.places.size()) return 0;
+    const int array = layout_.places[static_cast<size_t>(image)].array;
+    return array < 0 ? 0 : layout_.arrays[static_cast<size_t>(array)].side;
+}
+
+std::vector<std::uint8_t> SceneTextures::square(const Scene& scene, int image, std::uint32_t side) const {
+    const auto index = static_cast<size_t>(image);
+    return resampleToSquare(scene.images[index], side, role_ == TextureRole::Colour,
+                            nearest_[index] ? ResampleFilter::Nearest : ResampleFilter::Smooth);
+}
+
+void SceneTextures::upload(const Scene& scene) {
     for (size_t i = 0; i < arrays_.size(); ++i) {
         const TextureArrays::Array& array = layout_.arrays[i];
         for (const int image : array.images) {
@@ -130,8 +143,7 @@ void SceneTextures::upload(const Scene& scene, TextureRole role) {
                 logWarning("image '{}' of {}x{} is reduced to {} texels a side", source.name, source.width,
                            source.height, array.side);
             uploadSquare(arrays_[i].get(), layout_.places[index], array.side,
-                         resampleToSquare(source, array.side, role == TextureRole::Colour,
-                                          nearest[index] ? ResampleFilter::Nearest : ResampleFilter::Smooth));
+                         square(scene, image, array.side));
         }
         glGenerateTextureMipmap(arrays_[i].get());
     }

@@ -4,11 +4,6 @@
 #include <limits>
 
 namespace kestrel {
-std::uint32_t firstMaskedTriangle(const Geometry& geometry) {
-    const auto count = [&](TriangleClass c) { return geometry.ranges[static_cast<size_t>(c)].count; };
-    return geometry.triangleCount() - count(TriangleClass::Masked) - count(TriangleClass::MaskedDoubleSided);
-}
-
 AlphaTest::AlphaTest(const Geometry& geometry, const Scene& scene, bool blendedAsMasked)
     : first_(firstMaskedTriangle(geometry))
     , images_(scene.images.size()) {

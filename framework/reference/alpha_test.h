@@ -41,8 +41,4 @@ private:
     std::vector<AlphaImage> images_; // empty where no alpha test reads the image
 };
 
-// Index of the first triangle that needs an alpha test; triangles are sorted by class. The count if none
-// does.
-std::uint32_t firstMaskedTriangle(const Geometry& geometry);
-
 } // namespace kestrel

@@ -1,6 +1,6 @@
 // Reads of a scene's images as samplers do them: transformed, wrapped, filtered.
 #pragma once
-#include "scene/material.h"
+#include "scene/texture_transform.h"
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
@@ -13,13 +13,6 @@ inline int wrappedTexel(int i, int size, Wrap wrap) {
     const int period = wrap == Wrap::Repeat ? size : 2 * size;
     const int k = ((i % period) + period) % period;
     return k < size ? k : period - 1 - k;
-}
-
-// KHR_texture_transform: scale, then rotation, then offset.
-inline glm::vec2 transformedTexCoord(const TextureRef& texture, const glm::vec2& texCoord) {
-    const glm::vec2 p = texCoord * texture.scale;
-    const float c = std::cos(texture.rotation), s = std::sin(texture.rotation);
-    return glm::vec2(c * p.x + s * p.y, -s * p.x + c * p.y) + texture.offset;
 }
 
 // The finest level at `texCoord` (before the reference's transform), bilinear or nearest as the reference

@@ -54,6 +54,13 @@ struct Geometry {
     }
 };
 
+// Index of the first triangle that needs an alpha test; triangles are sorted by class. The count if none
+// does.
+[[nodiscard]] inline std::uint32_t firstMaskedTriangle(const Geometry& geometry) {
+    const auto count = [&](TriangleClass c) { return geometry.ranges[static_cast<size_t>(c)].count; };
+    return geometry.triangleCount() - count(TriangleClass::Masked) - count(TriangleClass::MaskedDoubleSided);
+}
+
 // A camera at one time, relative to Scene::origin.
 struct CameraState {
     glm::mat4 view{1};     // render space to eye space (looking along -z)

@@ -5,10 +5,13 @@
 //   scene_previous_positions   rgba32f   of the last frame
 //   scene_vertices             rgba32f   vertexRecordTexels texels a vertex (VertexRecord, shared/scene.h)
 //   scene_triangles            rgba32ui  one texel a triangle: three vertices, material
+//   scene_cutouts              rgba32ui  cutoutTexels texels a masked triangle (CutoutRecord, shared/scene.h)
+//   scene_cutout_alpha         r32ui     one word a texel of an image: its alpha and those right of it, below and both
 // or as storage blocks:
 //   ScenePositions { vec4[] }, ScenePreviousPositions { vec4[] }, SceneVertices { VertexRecord[] },
 //   SceneTriangles { uvec4[] }
-// and: the blocks Materials and Lights, the samplers scene_colour_textures and scene_data_textures (lib/material.glsl),
+// scene_first_masked (uint) is the triangle that has the first record of scene_cutouts.
+// And: the blocks Materials and Lights, the samplers scene_colour_textures and scene_data_textures (lib/material.glsl),
 // and the uniform scene_first_triangle, the number of the triangle that gl_PrimitiveID 0 is (lib/fragment.glsl).
 #include "lib/frame.glsl"
 #include "lib/material.glsl"
@@ -19,11 +22,15 @@
 uniform samplerBuffer scene_positions;
 uniform samplerBuffer scene_vertices;
 uniform usamplerBuffer scene_triangles;
+uniform usamplerBuffer scene_cutouts;
+uniform usamplerBuffer scene_cutout_alpha;
 #define SCENE_TEXEL(buffer, index) texelFetch(buffer, int(index))
 #else
 layout(rgba32f) uniform readonly imageBuffer scene_positions;
 layout(rgba32f) uniform readonly imageBuffer scene_vertices;
 layout(rgba32ui) uniform readonly uimageBuffer scene_triangles;
+layout(rgba32ui) uniform readonly uimageBuffer scene_cutouts;
+layout(r32ui) uniform readonly uimageBuffer scene_cutout_alpha;
 #define SCENE_TEXEL(buffer, index) imageLoad(buffer, int(index))
 #endif
 
@@ -54,13 +61,55 @@ VertexRecord sceneVertexAt(uvec4 triangle, vec2 barycentrics) {
                         w * a.texCoord1 + u * b.texCoord1 + v * c.texCoord1, w * a.colour + u * b.colour + v * c.colour);
 }
 
-// Whether a hit on the triangle counts: the alpha test, compiled in for masked scenes only.
+#ifdef MATERIAL_MASKED
+uniform uint scene_first_masked;
+
+// Alpha of an image at a point, as a sampler reads its finest level.
+float cutoutAlpha(vec2 at, uint place, uint size) {
+#ifdef MATERIAL_TEXTURES
+    vec2 sides = vec2((uvec2(size, size >> cutoutHeightShift) & cutoutSizeMask) + 1u);
+    uvec2 wraps = uvec2(size >> cutoutWrapShift, size >> (cutoutWrapShift + 2u)) & 3u;
+    // Repeated images go on at their other side; mirrored and clamped ones keep half a texel from the border.
+    vec2 mirrored = 1.0 - abs(at - 2.0 * floor(0.5 * at) - 1.0);
+    vec2 kept = clamp(mix(at, mirrored, equal(wraps, uvec2(1u))), 0.5 / sides, 1.0 - 0.5 / sides);
+    vec2 texel = mix(kept, at - floor(at), equal(wraps, uvec2(0u))) * sides;
+    if ((place & cutoutNearest) == 0u) texel -= 0.5;
+    vec2 corner = floor(texel);
+    vec2 part = texel - corner;
+    corner = min(mix(corner, sides - 1.0, lessThan(corner, vec2(0.0))), sides - 1.0);
+    uint word = uint(corner.y) * uint(sides.x) + uint(corner.x) + (place & cutoutPlaceMask);
+    vec4 alphas = unpackUnorm4x8(SCENE_TEXEL(scene_cutout_alpha, word).r);
+    return mix(mix(alphas.x, alphas.y, part.x), mix(alphas.z, alphas.w, part.x), part.y);
+#else
+    return 1.0;
+#endif
+}
+#endif
+
+// Whether a hit on the triangle counts: the alpha test, compiled in for masked scenes only. materialCovers() for fragments
+// says the same but for rounding.
 bool sceneCovers(uint triangle, vec2 barycentrics) {
 #ifdef MATERIAL_MASKED
-    uvec4 corners = sceneTriangle(triangle);
-    if ((scene_materials[corners.w].flags & materialFlagMasked) == 0u) return true;
-    VertexRecord at = sceneVertexAt(corners, barycentrics);
-    return materialCovers(corners.w, at.texCoord, at.texCoord1, at.colour.a);
+    if (triangle < scene_first_masked) return true;
+    uint at = cutoutTexels * (triangle - scene_first_masked);
+    uvec4 a = SCENE_TEXEL(scene_cutouts, at);
+    uvec4 b = SCENE_TEXEL(scene_cutouts, at + 1u);
+    vec4 c = uintBitsToFloat(SCENE_TEXEL(scene_cutouts, at + 2u));
+    float u = barycentrics.x;
+    float v = barycentrics.y;
+    float w = 1.0 - u - v;
+    vec2 texCoord = w * uintBitsToFloat(a.xy) + u * uintBitsToFloat(a.zw) + v * uintBitsToFloat(b.xy);
+    float alpha = (w * c.x + u * c.y + v * c.z) * cutoutAlpha(texCoord, b.z, b.w);
+    bool blended = (b.z & cutoutBlend) != 0u;
+#if defined(BLENDED_LEFT_OUT)
+    if (blended) return false;
+#elif defined(BLENDED_ALONE)
+    if (!blended) return false;
+#endif
+#if defined(BLENDED_KEPT) || defined(BLENDED_ALONE)
+    if (blended) return alpha > 0.0;
+#endif
+    return alpha >= c.w;
 #else
     return true;
 #endif

@@ -54,6 +54,22 @@ struct VertexRecord {
 };
 const uint vertexRecordTexels = 4u; // as rgba32f texels, in this order
 
+// What tells at a hit whether a masked triangle is there: three rgba32ui texels, one record a triangle from the first masked one on.
+struct CutoutRecord {
+    vec2 texCoord0, texCoord1, texCoord2; // of the corners, as the texture's own transform has them
+    uint place;  // of the image's first word (low bits), cutoutNearest, cutoutBlend
+    uint size;   // width - 1, height - 1 above, both wraps as in TextureRecord::flags topmost
+    float alpha0, alpha1, alpha2; // of the corners, the material's factor included
+    float threshold; // least alpha that is there
+};
+const uint cutoutTexels = 3u;
+const uint cutoutPlaceMask = 0x3fffffffu;
+const uint cutoutNearest = 0x40000000u; // read without a filter
+const uint cutoutBlend = 0x80000000u;
+const uint cutoutSizeMask = 0x3fffu;
+const uint cutoutHeightShift = 14u;
+const uint cutoutWrapShift = 28u; // two bits for each axis: 0 repeat, 1 mirrored repeat, 2 clamp to edge
+
 // A light at the frame's time; render space.
 struct LightRecord {
     vec3 position;
