@@ -4,6 +4,11 @@
 #include <algorithm>
 
 namespace kestrel {
+namespace {
+
+void markLargeTriangles(Commands& commands) { commands.dispatchIndirect("large"); }
+
+} // namespace
 
 Defines markingDefines(const World& world, int resolution) {
     Defines defines = world.facts.hasMasked ? materialDefines(world.facts) : Defines{};
@@ -22,11 +27,34 @@ std::vector<Step> exactSteps(const World& world, int resolution) {
                .group = "generation"};
     Step large = small;
     large.name = "large_triangles";
-    large.run = [](Commands& commands) { commands.dispatchIndirect("large"); };
+    large.run = markLargeTriangles;
     large.defines["LARGE"] = "1";
     large.uses.back().write = false;
     large.uses.push_back({.port = "large", .access = Access::Indirect});
     return {small, large};
+}
+
+std::vector<Step> separatingSteps(const World& world, int resolution, float inset) {
+    std::vector<Step> steps = exactSteps(world, resolution);
+    for (Step& step : steps) step.defines["SEPARATING"] = "1";
+    const auto sided = [inset](Commands& commands) {
+        const auto first = [&](TriangleClass c) {
+            return static_cast<int>(commands.geometry().ranges[static_cast<std::size_t>(c)].first);
+        };
+        commands.set("inset", inset);
+        commands.set("classes",
+                     glm::ivec3(first(TriangleClass::OpaqueDoubleSided), first(TriangleClass::Masked),
+                                first(TriangleClass::MaskedDoubleSided)));
+    };
+    steps[0].run = [sided](Commands& commands) {
+        sided(commands);
+        markTriangles(commands);
+    };
+    steps[1].run = [sided](Commands& commands) {
+        sided(commands);
+        markLargeTriangles(commands);
+    };
+    return steps;
 }
 
 // An indirect command and the count stand in front of the list.

@@ -1,5 +1,5 @@
-// Marking every cell that a triangle meets (shaders/occupancy/exact.comp): the steps, shared by the passes
-// that make maps like this.
+// Marking cells by what triangles meet (shaders/occupancy/exact.comp): the steps, shared by the passes that
+// make maps like this.
 #pragma once
 #include "graph/pass.h"
 #include <vector>
@@ -14,6 +14,9 @@ Defines markingDefines(const World& world, int resolution);
 // The steps "triangles" and "large_triangles": they mark cells of "grid" in "occupancy", which was cleared,
 // by way of the list "large", whose first 16 bytes were cleared.
 std::vector<Step> exactSteps(const World& world, int resolution);
+// The same by columns (shared/triangle_cell.h: columnMeets()): fewer cells, one-sided surfaces `inset` cells
+// behind.
+std::vector<Step> separatingSteps(const World& world, int resolution, float inset);
 Desc largeTrianglesDesc(const World& world);
 
 // In the step "triangles".

@@ -47,15 +47,17 @@ PassType OccupancyMap::type() {
     table.internal("large", PortKind::Buffer, "Triangles over many cells, and the work groups that mark them")
         .number("resolution", &OccupancyMap::resolution, 32, 256, "cells",
                 "Cells along an edge: 32, 64, 128 or 256")
-        .choice("method", &OccupancyMap::method,
-                {"three_axis", "logic_op", "interlock", "framebuffer_fetch", "dominant_axis", "exact"},
-                "How cells are marked: rasterized along three axes (four ways that give the same bits), each "
-                "triangle "
-                "along one, or exactly")
+        .choice(
+            "method", &OccupancyMap::method,
+            {"three_axis", "logic_op", "interlock", "framebuffer_fetch", "dominant_axis", "exact",
+             "separating"},
+            "How cells are marked: rasterized along three axes (four ways that give the same bits) or each "
+            "triangle along one; exact: all that a triangle meets; separating: those that it passes in the "
+            "columns along its steepest axis whose middles it meets, closed but for creases")
         .flag("jitter", &OccupancyMap::jitter,
               "Shifts the cells by up to half of one, differently every frame")
         .number("inset", &OccupancyMap::inset, 0, 0.5, "cells",
-                "How far behind one-sided surfaces their cells are marked, where they are rasterized: cells "
+                "How far behind one-sided surfaces their cells are marked, by all methods but exact: cells "
                 "make everything thicker");
     return table;
 }
@@ -97,8 +99,10 @@ Declaration OccupancyMap::declare(const World& world, const Inputs&, const Deman
         declaration.leftOut.push_back({"alpha test", "no material is masked or blended"});
     if (!makesColumns(method)) occupancy.clear = glm::vec4(0);
     std::vector<Step> steps = method == OccupancyMethod::Exact ? exactSteps(world, resolution)
-                              : makesColumns(method)           ? columnSteps(world)
-                                                               : rasterSteps(world);
+                              : method == OccupancyMethod::Separating
+                                  ? separatingSteps(world, resolution, inset)
+                              : makesColumns(method) ? columnSteps(world)
+                                                     : rasterSteps(world);
     for (const Step& step : steps) declareInternals(step, world, declaration);
     std::move(steps.begin(), steps.end(), std::back_inserter(declaration.steps));
     return declaration;

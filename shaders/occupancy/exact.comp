@@ -1,4 +1,5 @@
-// Marks every cell that a triangle meets, and no other (shared/triangle_cell.h). Two steps, so that no invocation walks
+// Marks every cell that a triangle meets, and no other, or with SEPARATING those that it passes in the columns whose middles
+// meet it (shared/triangle_cell.h). Two steps, so that no invocation walks
 // far: one invocation a triangle marks the small ones and lists the large ones; with LARGE, `largeSlices` work groups
 // share the columns of a listed triangle.
 //
@@ -32,6 +33,11 @@ layout(std430) buffer Large {
 } large;
 
 uniform int triangleCount;
+#ifdef SEPARATING
+// Cells that one-sided surfaces are moved back, and where triangles begin that are double-sided, masked, and both.
+uniform float inset;
+uniform ivec3 classes;
+#endif
 
 const uint largeSlices = 16u;
 const uint maxGroups = 65535u;
@@ -58,12 +64,24 @@ struct Corners {
 
 Corners cornersOf(uint triangle) {
     uvec4 vertices = sceneTriangle(triangle);
-    return Corners(cellsOf(GRID, scenePosition(vertices.x)), cellsOf(GRID, scenePosition(vertices.y)),
-                   cellsOf(GRID, scenePosition(vertices.z)));
+    Corners corners = Corners(cellsOf(GRID, scenePosition(vertices.x)), cellsOf(GRID, scenePosition(vertices.y)),
+                              cellsOf(GRID, scenePosition(vertices.z)));
+#ifdef SEPARATING
+    int index = int(triangle);
+    bool oneSided = index < classes.x || (index >= classes.y && index < classes.z);
+    vec3 back = oneSided ? behindFace(corners.a, corners.b, corners.c, inset) : vec3(0.0);
+    corners = Corners(corners.a + back, corners.b + back, corners.c + back);
+#endif
+    return corners;
 }
 
 void markColumn(uint triangle, Corners corners, TriangleWalk walk, int x, int y) {
+#ifdef SEPARATING
+    if (!columnMeets(walk, corners.a, corners.b, corners.c, x, y)) return;
+    ivec2 range = throughColumn(walk, x, y);
+#else
     ivec2 range = walkColumn(walk, x, y);
+#endif
     for (int z = range.x; z <= range.y; ++z) {
         ITERATION;
         ivec3 cell = axisBack(ivec3(x, y, z), walk.axis);
@@ -71,7 +89,9 @@ void markColumn(uint triangle, Corners corners, TriangleWalk walk, int x, int y)
         vec3 a = corners.a - centre;
         vec3 b = corners.b - centre;
         vec3 c = corners.c - centre;
+#ifndef SEPARATING
         if (!triangleMeetsCube(a, b, c)) continue;
+#endif
 #ifdef MATERIAL_MASKED
         if (!sceneCovers(triangle, weightsOver(a, b, c))) continue;
 #endif

@@ -108,6 +108,30 @@ TEST_F(OccupancyMapGl, ExactEqualsTheOracle) {
     }
 }
 
+// One- and two-sided surfaces, small and large triangles, at one inset.
+TEST_F(OccupancyMapGl, SeparatingEqualsItsOracle) {
+    for (const bool doubleSided : {false, true})
+        for (const float scale : {1.0f, 1e4f}) {
+            std::vector<glm::vec3> corners = hardTriangles();
+            for (glm::vec3& corner : corners) corner *= scale;
+            Scene scene = sceneOf(corners);
+            Material material;
+            material.doubleSided = doubleSided;
+            scene.materials = {material};
+            for (Primitive& primitive : scene.meshes[0].primitives) primitive.material = 0;
+            finishScene(scene);
+            for (const int n : {32, 128}) {
+                Renderer renderer = mapRenderer(scene, properties(n, "separating") + R"(, "inset": 0.375)");
+                renderer.frame();
+                const auto map = wordsOf(renderer, {"map", "occupancy"});
+                EXPECT_GT(setBits(map), 100u);
+                EXPECT_EQ(map,
+                          separatingOracle(flatten(scene, 0), gridOf(renderer), doubleSided ? 0 : 0.375f))
+                    << "scale " << scale << ", " << n << " cells";
+            }
+        }
+}
+
 // One triangle over the whole cube at the finest resolution: over 65,535 cells in one triangle's box.
 TEST_F(OccupancyMapGl, HugeTrianglesLoseNothing) {
     const Scene scene =
@@ -122,7 +146,7 @@ TEST_F(OccupancyMapGl, HugeTrianglesLoseNothing) {
 TEST_F(OccupancyMapGl, EmptyAndPointScenesAreValidAndEmpty) {
     const glm::vec3 point(3, 4, 5);
     for (const Scene& scene : {emptyScene(), sceneOf({point, point, point})}) {
-        for (const char* method : {"three_axis", "logic_op", "dominant_axis", "exact"}) {
+        for (const char* method : {"three_axis", "logic_op", "dominant_axis", "exact", "separating"}) {
             Renderer renderer = mapRenderer(scene, properties(32, method));
             renderer.frame();
             EXPECT_EQ(setBits(wordsOf(renderer, {"map", "occupancy"})), 0u);
@@ -133,7 +157,7 @@ TEST_F(OccupancyMapGl, EmptyAndPointScenesAreValidAndEmpty) {
 }
 
 TEST_F(OccupancyMapGl, OneTriangleIsSomewhereInTheMap) {
-    for (const char* method : {"three_axis", "logic_op", "dominant_axis", "exact"}) {
+    for (const char* method : {"three_axis", "logic_op", "dominant_axis", "exact", "separating"}) {
         const size_t bits = setBits(mapOf(sceneOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), 32, method));
         EXPECT_GT(bits, 200u) << method;
         EXPECT_LT(bits, 1200u) << method;
@@ -186,7 +210,7 @@ CellBox occupiedBox(const std::vector<std::uint32_t>& map, int n) {
 TEST_F(OccupancyMapGl, OneSidedSurfacesAreMarkedBehind) {
     constexpr int n = 64;
     int moved = 0;
-    for (const char* method : {"three_axis", "logic_op", "dominant_axis"})
+    for (const char* method : {"three_axis", "logic_op", "dominant_axis", "separating"})
         for (const float inset : {0.0f, 0.25f, 0.5f})
             for (const bool doubleSided : {false, true})
                 for (const glm::vec3& extent : {glm::vec3(1, 0.61f, 0.37f), glm::vec3(0.53f, 0.97f, 0.83f),
@@ -210,7 +234,7 @@ TEST_F(OccupancyMapGl, OneSidedSurfacesAreMarkedBehind) {
 
 // Scale and place change nothing but rounding.
 TEST_F(OccupancyMapGl, ScaledScenesHaveTheSameMap) {
-    for (const char* method : {"three_axis", "exact"}) {
+    for (const char* method : {"three_axis", "exact", "separating"}) {
         const std::vector<std::uint32_t> reference = mapOf(sceneOf(randomTriangles(100, 9)), 64, method);
         for (const float scale : {1e-4f, 1e4f}) {
             const auto map = mapOf(sceneOf(randomTriangles(100, 9, scale)), 64, method);
@@ -280,7 +304,7 @@ Scene halfQuad() {
 }
 
 TEST_F(OccupancyMapGl, AlphaTestsMakeHoles) {
-    for (const char* method : {"three_axis", "logic_op", "dominant_axis", "exact"}) {
+    for (const char* method : {"three_axis", "logic_op", "dominant_axis", "exact", "separating"}) {
         Renderer renderer = mapRenderer(halfQuad(), properties(64, method));
         renderer.frame();
         const auto map = wordsOf(renderer, {"map", "occupancy"});

@@ -411,7 +411,7 @@ TEST_F(OccupancyRoma, MapsAreRenewedInTurn) {
         expectMapsOfTheirCandidates(mapsOf(renderer));
         EXPECT_EQ(changes(before, candidatesOf(mapsOf(renderer))), maps);
         // From the start: the same again.
-        renderer.set("map.method=three_axis");
+        renderer.set("map.method=separating");
         renderer.restart();
         renderer.frame();
         EXPECT_EQ(mapsOf(renderer).rotated, first);

@@ -263,12 +263,16 @@ TEST_F(OccupancyTraceGl, WorksAtAnyScaleAndWithoutAScene) {
 }
 
 // From the inner sides of a sealed room with walls of one cell and more, at most one ray in a hundred gets
-// out: where all cells that the walls touch are marked, and rays start as they do by default.
+// out, where cells are marked and rays start as they do by default, and where all cells that walls touch are
+// marked.
 TEST_F(OccupancyTraceGl, WallsOfACellHoldTheRays) {
     const glm::dquat turned(glm::dvec3(0.3, 0.5, 0.2)); // as the scene is
     std::mt19937 random(7);
     std::uniform_real_distribution<double> unit(-1, 1);
-    for (const int tenths : {10, 15, 20, 30}) {
+    for (const auto& [tenths, method] :
+         {std::pair(10, "exact"), std::pair(15, "exact"), std::pair(20, "exact"), std::pair(30, "exact"),
+          std::pair(10, "separating"), std::pair(15, "separating"), std::pair(20, "separating"),
+          std::pair(30, "separating")}) {
         const double within = 1 - 0.1 * tenths * 2 * std::sqrt(3.0) / 126;
         RaySource::rays.clear();
         for (int i = 0; i < 20'000; ++i) {
@@ -283,7 +287,8 @@ TEST_F(OccupancyTraceGl, WallsOfACellHoldTheRays) {
                                                 glm::vec3(turned * normal)));
         }
         const Graph graph = parseGraph(R"({"kestrel": 1, "passes": {
-                "map": {"type": "OccupancyMap", "properties": {"method": "exact"}},
+                "map": {"type": "OccupancyMap", "properties": {"method": ")" +
+                                           std::string(method) + R"("}},
                 "walk": {"type": "OccupancyTrace"}, "roma": {"type": "Roma"}, "rays": {"type": "RaySource"},
                 "walked": {"type": "RayQuery"}, "snapped": {"type": "RayQuery", "properties": {"snap": true}}},
             "edges": [["map.occupancy", "walk.occupancy"], ["map.grid", "walk.grid"],
@@ -299,7 +304,8 @@ TEST_F(OccupancyTraceGl, WallsOfACellHoldTheRays) {
             int leaks = 0;
             for (const shared::HitRecord& hit : as<shared::HitRecord>(renderer.readBytes({query, "hits"})))
                 leaks += std::isinf(hit.t) && hit.weight > 0;
-            EXPECT_LE(leaks, 200) << query << " through walls of " << tenths << " tenths of a cell";
+            EXPECT_LE(leaks, 200) << query << " through walls of " << tenths << " tenths of a cell, "
+                                  << method;
         }
     }
 }

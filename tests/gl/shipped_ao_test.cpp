@@ -31,9 +31,13 @@ TEST_F(Ao, AnOpenPlaneSeesTheWholeSkyAtAnyTilt) {
         for (const float value : visibility(scene, byBvh, 4).values) ASSERT_EQ(value, 1.0f) << degrees;
         EXPECT_GE(meanWhere(visibility(scene, {"roma.offset=1.5"}, 32), mask), 0.995)
             << "ROMA, tilted by " << degrees;
-        // Half a cell off the surface, as by default, a plane meets itself: measured 0.915 for one between
-        // two layers of cells, which both hold it, and 0.975 and more at other tilts.
-        EXPECT_GE(meanWhere(visibility(scene, {}, 32), mask), degrees == 0 ? 0.9 : 0.97)
+        // Half a cell off the surface, as by default, a plane of two sides meets itself: measured 0.916 for
+        // one between two layers of cells, which both hold it, and 0.931 and more at other tilts, where cells
+        // over each other do; where cells are rasterized 0.975.
+        EXPECT_GE(meanWhere(visibility(scene, {}, 32), mask), degrees == 0 ? 0.9 : 0.925)
+            << "ROMA, tilted by " << degrees;
+        EXPECT_GE(meanWhere(visibility(scene, {"bom.method=three_axis"}, 32), mask),
+                  degrees == 0 ? 0.9 : 0.97)
             << "ROMA, tilted by " << degrees;
     }
 }
@@ -161,9 +165,10 @@ TEST_F(Ao, OnTheTowerRomaStaysAsNearEmbreeAsItWasMeasured) {
         const Image picture = render(shippedGraph("ray_ao", settings), scene, mean, 16, {}, size);
         return measureError(reference, picture, {.mask = &mask}).flip.mean;
     };
-    // Measured 0.1740, and 0.0882 by the BVH. Another driver's rounding moves single rays at edges, which is
-    // a hundredth of either; a map whose one-sided surfaces are not set back has 0.0871 and must not pass.
-    EXPECT_NEAR(flip({}), 0.1740, 0.003);
+    // Measured 0.1889 (0.1810 where cells are rasterized along three axes), and 0.0882 by the BVH. Another
+    // driver's rounding moves single rays at edges, which is a hundredth of either; a map whose one-sided
+    // surfaces are not set back has 0.2222 and must not pass.
+    EXPECT_NEAR(flip({}), 0.1889, 0.003);
     EXPECT_NEAR(flip(byBvh), 0.0882, 0.002);
 }
 

@@ -74,13 +74,15 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                                            std::pair{"interlock", "GL_ARB_fragment_shader_interlock"},
                                            std::pair{"framebuffer_fetch", "GL_EXT_shader_framebuffer_fetch"},
                                            std::pair{"dominant_axis", static_cast<const char*>(nullptr)},
-                                           std::pair{"exact", static_cast<const char*>(nullptr)}),
+                                           std::pair{"exact", static_cast<const char*>(nullptr)},
+                                           std::pair{"separating", static_cast<const char*>(nullptr)}),
                          [](const auto& of) { return std::string(of.param.first); });
 
 TEST_F(Extremes, TheMethodsOfTheTestAreThoseOfThePass) {
     const PropertyInfo* method = shipped().find("OccupancyMap")->property("method");
-    EXPECT_EQ(method->choices, (std::vector<std::string>{"three_axis", "logic_op", "interlock",
-                                                         "framebuffer_fetch", "dominant_axis", "exact"}));
+    EXPECT_EQ(method->choices,
+              (std::vector<std::string>{"three_axis", "logic_op", "interlock", "framebuffer_fetch",
+                                        "dominant_axis", "exact", "separating"}));
 }
 
 TEST_F(Extremes, AnEmptyScene) { expectSound(trianglesScene({})); }

@@ -36,6 +36,14 @@ SceneEdit lighting(size_t level) {
 constexpr size_t lightings = 4, filters = 3, properties = 4;
 constexpr size_t allRows = 1000; // as many as meet a new pair
 
+// Whether this context can do what is chosen.
+bool isHere(const std::string& choice) {
+    const Capabilities& here = context().capabilities();
+    if (choice == "interlock") return here.has("GL_ARB_fragment_shader_interlock");
+    if (choice == "framebuffer_fetch") return here.has("GL_EXT_shader_framebuffer_fetch");
+    return true;
+}
+
 // What the graph's switches can be set to: those of filters, or those of the other passes, and which of the
 // tracers and layers that stand in the graph is used.
 std::vector<std::string> settingsOf(const Graph& graph, bool ofFilters) {
@@ -50,7 +58,8 @@ std::vector<std::string> settingsOf(const Graph& graph, bool ofFilters) {
             if (const bool* on = std::get_if<bool>(&value))
                 settings.push_back(fmt::format("{}.{}={}", pass.name, property.name, !*on));
             for (const std::string& choice : property.choices)
-                if (property.kind == PropertyKind::Choice && choice != std::get<std::string>(value))
+                if (property.kind == PropertyKind::Choice && choice != std::get<std::string>(value) &&
+                    isHere(choice))
                     settings.push_back(fmt::format("{}.{}={}", pass.name, property.name, choice));
         }
     }

@@ -179,6 +179,60 @@ TEST(OccupancyCells, TheWalkPassesEveryCellThatIsMet) {
     }
 }
 
+// Marked by columns, a plane of two triangles stops every step from cell to cell, across a face, an edge or a
+// corner, from one of its sides to the other; marked where it meets the middle lines of cells alone, it does
+// not.
+TEST(OccupancyCells, APlaneMarkedByColumnsLetsNoStepThrough) {
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> unit(-0.5, 0.5);
+    constexpr int n = 24;
+    int through = 0, throughCentreLines = 0;
+    for (int i = 0; i < 60; ++i) {
+        const glm::dvec3 axis = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+        const glm::dvec3 right = glm::normalize(
+            glm::cross(axis, std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+        const glm::dvec3 up = glm::cross(axis, right);
+        const glm::dvec3 middle = 0.5 * n + glm::dvec3(unit(random), unit(random), unit(random));
+        const auto corner = [&](double x, double y) {
+            return glm::vec3(middle + 100.0 * (x * right + y * up));
+        };
+        const glm::vec3 quad[4] = {corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)};
+        std::vector<bool> byColumns(n * n * n), byCentreLines(n * n * n);
+        const auto at = [&](const glm::ivec3& c) { return static_cast<size_t>((c.z * n + c.y) * n + c.x); };
+        for (const int second : {1, 2}) {
+            const glm::vec3 &a = quad[0], &b = quad[second], &c = quad[second + 1];
+            const shared::TriangleWalk walk = shared::triangleWalk(a, b, c, n);
+            for (int y = walk.first.y; y <= walk.last.y; ++y)
+                for (int x = walk.first.x; x <= walk.last.x; ++x) {
+                    if (!shared::columnMeets(walk, a, b, c, x, y)) continue;
+                    const glm::ivec2 range = shared::throughColumn(walk, x, y);
+                    for (int z = std::max(range.x, 0); z <= std::min(range.y, n - 1); ++z)
+                        byColumns[at(shared::axisBack({x, y, z}, walk.axis))] = true;
+                }
+        }
+        const auto side = [&](const glm::ivec3& c) { return glm::dot(glm::dvec3(c) + 0.5 - middle, axis); };
+        // A plane meets a middle line of a cell where it is within half a cell of its centre along that line.
+        const double steepest = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
+        for (int z = 0; z < n; ++z)
+            for (int y = 0; y < n; ++y)
+                for (int x = 0; x < n; ++x)
+                    byCentreLines[at({x, y, z})] = std::abs(side({x, y, z})) <= 0.5 * steepest;
+        for (int z = 1; z + 1 < n; ++z)
+            for (int y = 1; y + 1 < n; ++y)
+                for (int x = 1; x + 1 < n; ++x)
+                    for (int step = 0; step < 27; ++step) {
+                        const glm::ivec3 from(x, y, z),
+                            to = from + glm::ivec3(step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
+                        if (side(from) >= 0 || side(to) < 0) continue;
+                        through += !byColumns[at(from)] && !byColumns[at(to)];
+                        throughCentreLines += !byCentreLines[at(from)] && !byCentreLines[at(to)];
+                    }
+    }
+    EXPECT_EQ(through, 0);
+    EXPECT_GT(throughCentreLines, 1000);
+}
+
 // Of a well-shaped triangle few cells stand over each other along the chosen axis.
 TEST(OccupancyCells, TheWalkIsThin) {
     std::mt19937 random(3);

@@ -35,4 +35,30 @@ inline std::vector<std::uint32_t> oracleMap(const Geometry& geometry, const shar
     return map;
 }
 
+// What a map made by columns must be: every column of every triangle's bounding box one by one.
+inline std::vector<std::uint32_t> separatingOracle(const Geometry& geometry,
+                                                   const shared::OccupancyGrid& grid, float inset) {
+    const int n = static_cast<int>(grid.resolution);
+    std::vector<std::uint32_t> map(static_cast<size_t>(n) * n * n / 32);
+    for (size_t i = 0; i < geometry.indices.size(); i += 3) {
+        glm::vec3 p[3];
+        for (size_t k = 0; k < 3; ++k)
+            p[k] = shared::cellsOf(grid, geometry.positions[geometry.indices[i + k]]);
+        const glm::vec3 back = shared::behindFace(p[0], p[1], p[2], inset);
+        for (glm::vec3& corner : p) corner += back;
+        const shared::TriangleWalk walk = shared::triangleWalk(p[0], p[1], p[2], n);
+        for (int y = walk.first.y; y <= walk.last.y; ++y)
+            for (int x = walk.first.x; x <= walk.last.x; ++x) {
+                if (!shared::columnMeets(walk, p[0], p[1], p[2], x, y)) continue;
+                const glm::ivec2 range = shared::throughColumn(walk, x, y);
+                for (int z = range.x; z <= range.y; ++z) {
+                    const glm::ivec3 cell = shared::axisBack({x, y, z}, walk.axis);
+                    map[static_cast<size_t>(shared::occupancyWord(cell.x, cell.y, cell.z, n))] |=
+                        1u << (cell.z & 31);
+                }
+            }
+    }
+    return map;
+}
+
 } // namespace kestrel::test

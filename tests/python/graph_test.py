@@ -26,7 +26,7 @@ def test_a_graph_is_loaded_and_saved_byte_for_byte():
 
 def test_properties_are_attributes_with_the_tables_ranges():
     graph = kestrel.load("ray_ao.json")
-    assert isinstance(graph.roma, passes.Roma) and graph.roma.angular == 4 and graph["bom"].method == "three_axis"
+    assert isinstance(graph.roma, passes.Roma) and graph.roma.angular == 4 and graph["bom"].method == "separating"
     graph.roma.angular = 8
     graph.ao.snap = False
     assert '"angular": 8' in str(graph) and graph.ao.properties()["snap"] is False
