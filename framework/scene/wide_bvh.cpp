@@ -64,6 +64,29 @@ Planes quantized(const Child* children, int count, int axis) {
     return planes;
 }
 
+// A node over up to four children.
+WideItem innerItem(const Child* children, std::size_t count, std::uint32_t first) {
+    WideItem item{};
+    item.texels[0].w = shared::wideNode;
+    item.texels[1].w = shared::wideTexels * first;
+    item.texels[2].w = (1u << count) - 1u;
+    if (count == 0) return item;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Planes planes = quantized(children, static_cast<int>(count), axis);
+        item.texels[0][axis] = std::bit_cast<std::uint32_t>(planes.origin);
+        item.texels[0].w |= planes.exponent << (8 * axis);
+        item.texels[1][axis] = planes.low;
+        item.texels[2][axis] = planes.high;
+    }
+    return item;
+}
+
+bool isNode(const WideItem& item) { return (item.texels[0].w & shared::wideNode) != 0; }
+std::uint32_t firstChild(const WideItem& node) { return node.texels[1].w / shared::wideTexels; }
+std::uint32_t childCount(const WideItem& node) {
+    return static_cast<std::uint32_t>(std::popcount(node.texels[2].w & 15u));
+}
+
 float halfArea(const Child& child) {
     const glm::vec3 s = child.max - child.min;
     return s.x * s.y + s.y * s.z + s.z * s.x;
@@ -187,7 +210,9 @@ private:
                 std::swap(children[k], children[k - 1]);
         const std::size_t first = wide.items.size();
         wide.items.resize(first + count);
-        wide.items[to] = inner(children, count, static_cast<std::uint32_t>(first));
+        std::array<Child, 4> boxes;
+        for (std::size_t i = 0; i < count; ++i) boxes[i] = children[i].child;
+        wide.items[to] = innerItem(boxes.data(), count, static_cast<std::uint32_t>(first));
         // Below the root each by itself, whatever the threads, so that the items are always in the same
         // order.
         std::array<std::future<WideBvh>, 4> parts;
@@ -213,28 +238,10 @@ private:
     static void append(WideBvh& wide, std::size_t root, WideBvh part) {
         const auto shift = static_cast<std::uint32_t>(wide.items.size() - 1) * shared::wideTexels;
         for (WideItem& item : part.items)
-            if ((item.texels[0].w & shared::wideNode) != 0) item.texels[1].w += shift;
+            if (isNode(item)) item.texels[1].w += shift;
         wide.items[root] = part.items.front();
         wide.items.insert(wide.items.end(), part.items.begin() + 1, part.items.end());
         wide.depth = std::max(wide.depth, part.depth);
-    }
-
-    static WideItem inner(const std::array<Found, 4>& found, std::size_t count, std::uint32_t first) {
-        std::array<Child, 4> children;
-        for (std::size_t i = 0; i < count; ++i) children[i] = found[i].child;
-        WideItem item{};
-        item.texels[0].w = shared::wideNode;
-        item.texels[1].w = shared::wideTexels * first;
-        item.texels[2].w = (1u << count) - 1u;
-        if (count == 0) return item;
-        for (int axis = 0; axis < 3; ++axis) {
-            const Planes planes = quantized(children.data(), static_cast<int>(count), axis);
-            item.texels[0][axis] = std::bit_cast<std::uint32_t>(planes.origin);
-            item.texels[0].w |= planes.exponent << (8 * axis);
-            item.texels[1][axis] = planes.low;
-            item.texels[2][axis] = planes.high;
-        }
-        return item;
     }
 
     static WideItem triangle(const BvhTriangle& t) {
@@ -254,6 +261,58 @@ private:
 std::uint64_t mostWideItems(std::uint64_t triangles) {
     // Every inner node but the root has two children or more.
     return 1 + 2 * std::max<std::uint64_t>(1, triangles);
+}
+
+void refit(WideBvh& wide, const Geometry& geometry) {
+    std::vector<Box> boxes(wide.items.size());
+    // Children lie behind their parent.
+    for (std::size_t at = wide.items.size(); at-- > 0;) {
+        WideItem& item = wide.items[at];
+        if (!isNode(item)) {
+            const std::size_t triangle = item.texels[0].w;
+            KESTREL_CHECK_LT(triangle, geometry.indices.size() / 3);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const glm::vec3& p = geometry.positions[geometry.indices[3 * triangle + k]];
+                for (int axis = 0; axis < 3; ++axis)
+                    item.texels[k][axis] = std::bit_cast<std::uint32_t>(p[axis]);
+                boxes[at].add(p);
+            }
+            continue;
+        }
+        const std::uint32_t first = firstChild(item), count = childCount(item);
+        std::array<Child, 4> children;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            children[i].min = boxes[first + i].min;
+            children[i].max = boxes[first + i].max;
+            boxes[at].add(boxes[first + i]);
+        }
+        item = innerItem(children.data(), count, first);
+    }
+}
+
+double expectedVisits(const WideBvh& wide) {
+    double sum = 0, root = 0;
+    for (const WideItem& item : wide.items) {
+        if (!isNode(item)) continue;
+        const auto step = [&](int axis) {
+            return std::bit_cast<float>((item.texels[0].w >> (8 * axis) & 255u) << 23);
+        };
+        glm::vec3 whole(0);
+        for (std::uint32_t k = 0; k < childCount(item); ++k) {
+            glm::vec3 size(0);
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto plane = [&](std::uint32_t word) {
+                    return step(axis) * static_cast<float>(word >> (8 * k) & 255u);
+                };
+                size[axis] = plane(item.texels[2][axis]) - plane(item.texels[1][axis]);
+                whole[axis] = std::max(whole[axis], plane(item.texels[2][axis]));
+            }
+            sum += double{size.x} * size.y + double{size.y} * size.z + double{size.z} * size.x;
+        }
+        if (&item == &wide.items.front())
+            root = double{whole.x} * whole.y + double{whole.y} * whole.z + double{whole.z} * whole.x;
+    }
+    return root > 0 ? 1 + sum / root : 1;
 }
 
 WideBvh widened(const Bvh& binary) {

@@ -20,6 +20,14 @@ struct WideBvh {
 // The most items that any build of so many triangles can need.
 std::uint64_t mostWideItems(std::uint64_t triangles);
 
+// Fits the boxes to geometry that has moved since the tree was built or fitted last: the same triangles (as
+// many, of the same materials and classes), whose places alone may differ. Hits are those of a tree built
+// anew, but for the order of `all`; how good the tree still is, expectedVisits() tells.
+void refit(WideBvh& wide, const Geometry& geometry);
+
+// Items that a ray through the root's box is expected to visit, by the surface area heuristic.
+double expectedVisits(const WideBvh& wide);
+
 // Merges the levels of a binary tree with leaves of one triangle (BvhSettings::maxLeaf) so that the surface
 // area heuristic expects the fewest visits.
 WideBvh widened(const Bvh& binary);

@@ -2,7 +2,6 @@
 #include "execute/commands.h"
 #include "graph/many_rays.h"
 #include "scene/bvh.h"
-#include "scene/wide_bvh.h"
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -19,6 +18,9 @@ std::uint64_t nodeBytes(std::uint64_t triangles) {
 std::uint64_t triangleBytes(std::uint64_t triangles) {
     return std::max<std::uint64_t>(1, triangles) * sizeof(BvhTriangle);
 }
+// How many times as many visits as a new tree's a fitted one may cost.
+constexpr double mostWorse = 1.3;
+
 std::uint64_t itemBytes(std::uint64_t triangles) { return mostWideItems(triangles) * sizeof(WideItem); }
 
 } // namespace
@@ -78,21 +80,52 @@ Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& de
     if (demand.reads("tracer"))
         provide("tracer", "PROVIDES_TRACER", provides::Surface | (wide ? provides::ManyRays : 0));
     if (demand.reads("hits")) provide("hits", "PROVIDES_HITS", provides::Surface);
-    declaration.steps.push_back({.name = "build", .uses = writes, .group = "generation"});
+    // In what order all hits of a ray are visited hangs on the tree, so that where they are read it is one of
+    // this frame alone.
+    declaration.steps.push_back({.name = "build",
+                                 .run = {&BvhPass::build, wide && !demand.reads("hits")},
+                                 .uses = writes,
+                                 .group = "generation"});
     if (!world.facts.hasMasked)
         declaration.leftOut.push_back({"alpha test at hits", "no material is masked or blended"});
     declaration.depends = Causes::Geometry | Causes::Transforms | Causes::Materials | Causes::Properties;
     return declaration;
 }
 
-void BvhPass::execute(const Step&, Commands& commands) {
+// Whether what was built for an earlier frame, of the same triangles, has been fitted to this one's and is
+// still good.
+bool BvhPass::refits(Commands& commands) {
+    const Geometry& geometry = commands.geometry();
+    const bool moved = !any(commands.causes() & ~(Causes::Frame | Causes::Camera | Causes::Cameras |
+                                                  Causes::Lights | Causes::Geometry | Causes::Transforms));
+    if (!moved || geometry.triangleCount() != triangles_) return false;
+    refit(moving_, geometry);
+    return expectedVisits(moving_) <= mostWorse * builtVisits_;
+}
+
+void BvhPass::build(Commands& commands, bool mayRefit) {
+    const Geometry& geometry = commands.geometry();
     if (layout == Layout::Binary) {
-        const Bvh bvh = buildBvh(commands.geometry(), {.maxLeaf = leaf, .bins = bins});
+        const Bvh bvh = buildBvh(geometry, {.maxLeaf = leaf, .bins = bins});
         commands.upload("nodes", bvh.nodes);
         commands.upload("triangles", bvh.triangles);
-    } else {
-        commands.upload("items", widened(buildBvh(commands.geometry(), {.maxLeaf = 1, .bins = bins})).items);
+        return;
     }
+    if (geometry.moving.empty() || !mayRefit) {
+        moving_ = {};
+        triangles_ = noTriangles;
+        commands.upload("items", widened(buildBvh(geometry, {.maxLeaf = 1, .bins = bins})).items);
+        return;
+    }
+    ++refits_;
+    if (!refits(commands)) {
+        moving_ = widened(buildBvh(geometry, {.maxLeaf = 1, .bins = bins}));
+        triangles_ = geometry.triangleCount();
+        builtVisits_ = expectedVisits(moving_);
+        refits_ = 0;
+    }
+    commands.upload("items", moving_.items);
+    commands.report("refits since building", refits_);
 }
 
 } // namespace kestrel

@@ -164,6 +164,18 @@ TEST_F(Invariants, AMovingSceneBuildsThemEveryFrame) {
     for (int i = 0; i < 4; ++i)
         for (const StepSample& sample : made.frame().samples) builds += sample.type == "Bvh";
     EXPECT_EQ(builds, 4);
+    EXPECT_EQ(made.last().values.at("bvh").at("refits since building"), 3);
+}
+
+// A hierarchy that is fitted to what moves answers as one that is built anew for each frame.
+TEST_F(Invariants, AFittedHierarchyShowsTheSamePicture) {
+    const auto picture = [](const std::string& layout) {
+        Renderer made = renderer(shippedGraph("ray_ao", {"ao.tracer=bvh.tracer", "bvh.layout=" + layout}),
+                                 loadScene("builtin:morph?detail=0.2"), {});
+        for (int i = 0; i < 6; ++i) made.frame();
+        return made.read({"mean", "result"}).values;
+    };
+    EXPECT_EQ(picture("wide"), picture("binary"));
 }
 
 } // namespace

@@ -380,6 +380,44 @@ TEST(Bvh, AWideTreeOfManyTrianglesIsWhole) {
     EXPECT_EQ(std::memcmp(one.items.data(), again.items.data(), one.items.size() * sizeof(WideItem)), 0);
 }
 
+// Fitted to what has moved, by little or by much, a tree answers as one built anew does; fitted to what has
+// not, it is itself.
+TEST(Bvh, AFittedWideTreeIsWholeAndAnswersAlike) {
+    Geometry g = randomGeometry(3000, 1, 0.1f);
+    const WideBvh built = buildWide(g);
+    WideBvh fitted = built;
+    refit(fitted, g);
+    EXPECT_EQ(std::memcmp(fitted.items.data(), built.items.data(), built.items.size() * sizeof(WideItem)), 0);
+    double before = expectedVisits(built);
+    EXPECT_GT(before, 5);
+    for (const float by : {0.001f, 0.1f, 3.0f}) {
+        for (std::size_t i = 0; i < g.positions.size(); ++i)
+            g.positions[i] += by * pointInCube(static_cast<std::uint32_t>(i));
+        refit(fitted, g);
+        std::vector<int> seen(g.triangleCount(), 0);
+        Box box;
+        EXPECT_EQ(checkWide(fitted, 0, box, seen), fitted.depth);
+        EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
+        EXPECT_GE(expectedVisits(fitted), 0.99 * expectedVisits(buildWide(g))) << by;
+        EXPECT_GE(expectedVisits(fitted), 0.99 * before) << by;
+        before = expectedVisits(fitted);
+        int hitting = 0;
+        for (std::uint32_t i = 0; i < 100; ++i) {
+            const glm::vec3 from = 3.0f * pointInCube(50000 + 2 * i), to = pointInCube(50001 + 2 * i);
+            const TraceRay ray{from, glm::normalize(to - from)};
+            const std::vector<TraceHit> expected = bruteForce(g, ray);
+            expectAnswers(fitted, ray, expected);
+            hitting += !expected.empty();
+        }
+        EXPECT_GT(hitting, 20) << by;
+    }
+    // Triangles all over each other leave another tree little to gain, and yet it gains.
+    EXPECT_GT(expectedVisits(fitted), 1.15 * expectedVisits(buildWide(g)));
+    WideBvh empty = buildWide({});
+    refit(empty, {});
+    EXPECT_EQ(expectedVisits(empty), 1);
+}
+
 TEST(Bvh, CarriesMaterialAndClass) {
     Geometry g = randomGeometry(10);
     g.materials = {0, 0, 0, 0, 1, 1, 1, 2, 2, 2};
