@@ -1,8 +1,8 @@
-// The hierarchy in GLSL, wide and binary, beside Embree: any hits of hemisphere rays, closest hits of camera
-// rays, any hits within an effect, in turn; and how many words of the answers are others than the first
-// form's. Times of all threads together hold better on a busy machine; making the rays is in them. Run by
-// hand: [FORMS="binary wide embree"] [KINDS="any closest inside"] [HEIGHT=720] build/bin/benchmark_bvh_cost
-// [FRAMES [SCENE...]]
+// The hierarchy in GLSL, wide and binary, beside Embree, ROMA and a tracer that answers at once (roma, none):
+// any hits of hemisphere rays, closest hits of camera rays, any hits within an effect, in turn; and how many
+// words of the answers are others than the first form's. Times of all threads together hold better on a busy
+// machine; making the rays is in them. Run by hand: [FORMS="binary wide embree"] [KINDS="any closest inside"]
+// [HEIGHT=720] build/bin/benchmark_bvh_cost [FRAMES [SCENE...]]
 #include "core/files.h"
 #include "core/spin.h"
 #include "execute/renderer.h"
@@ -56,12 +56,18 @@ std::string graphText(const std::string& kind, const std::string& form) {
     std::string text = R"({"kestrel": 1, "passes": {"gbuffer": {"type": "GBuffer"},
         "around": {"type": "HemisphereRays"}, "seen": {"type": "CameraRays"},)";
     const std::string query = kind == "closest" ? "closest" : "any";
-    if (!embree) text += fmt::format(R"("bvh": {{"type": "Bvh", "properties": {{"layout": "{}"}}}},)", form);
+    if (form == "roma")
+        text +=
+            R"("bom": {"type": "OccupancyMap", "properties": {"method": "exact"}}, "bvh": {"type": "Roma"},)";
+    else if (form == "none")
+        text += R"("bvh": {"type": "ConstantTracer"},)";
+    else if (!embree)
+        text += fmt::format(R"("bvh": {{"type": "Bvh", "properties": {{"layout": "{}"}}}},)", form);
     if (kind == "inside")
         text += R"("query": {"type": "RayAmbientOcclusion", "properties": {"rays": 1}}},)";
     else
-        text += fmt::format(R"("query": {{"type": "{}RayQuery", "properties": {{"query": "{}"}}}}}},)",
-                            embree ? "Reference" : "", query);
+        text += fmt::format(R"("query": {{"type": "{}RayQuery", "properties": {{"query": "{}"{}}}}}}},)",
+                            embree ? "Reference" : "", query, form == "roma" ? R"(, "snap": true)" : "");
     text += R"("edges": [["gbuffer.depth", "around.depth"], ["gbuffer.normal", "around.normal"],
         ["gbuffer.face_normal", "around.face_normal"], ["gbuffer.depth", "seen.depth"])";
     if (kind == "inside")
@@ -70,6 +76,7 @@ std::string graphText(const std::string& kind, const std::string& form) {
     else
         text += fmt::format(R"(, ["{}.rays", "query.rays"])", rays);
     if (!embree) text += R"(, ["bvh.tracer", "query.tracer"])";
+    if (form == "roma") text += R"(, ["bom.occupancy", "bvh.occupancy"], ["bom.grid", "bvh.grid"])";
     const char* output = kind == "inside" ? "visibility" : kind == "any" && !embree ? "distance" : "hits";
     return text + fmt::format(R"(], "outputs": ["query.{}"]}})", output);
 }
