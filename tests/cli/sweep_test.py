@@ -410,8 +410,8 @@ def test_lists_what_it_would_measure():
 
 def test_the_sweeps_of_the_paper_come_with_it():
     names = [sweep.stem for sweep in (SOURCE / "graphs" / "sweeps").glob("*.json")]
-    for name in ["ambient_occlusion", "antialiasing", "denoising", "glossy", "indirect", "large_scene", "leaks", "refresh",
-                 "roma_table2", "snap", "soft_shadow", "subdivision"]:
+    for name in ["ambient_occlusion", "antialiasing", "denoising", "glossy", "hierarchy", "indirect", "large_scene", "leaks",
+                 "near_field", "refresh", "roma_table2", "snap", "soft_shadow", "subdivision"]:
         assert name in names, name
 
 
