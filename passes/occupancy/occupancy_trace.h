@@ -19,7 +19,7 @@ public:
     [[nodiscard]] Declaration declare(const World& world, const Inputs& inputs,
                                       const Demand& demand) const override;
 
-    TraceMethod method = TraceMethod::Dda2d;
+    TraceMethod method = TraceMethod::Bricks;
     bool mips = true;
     int iterations = 1024;
     // Within 0.003 of the least error of visibility (0.068 of 1 at 64 cells, 0.060 at 128, `blob`) in a sweep
