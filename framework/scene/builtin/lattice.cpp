@@ -11,7 +11,7 @@
 namespace kestrel::builtin {
 namespace {
 
-constexpr int layers = 60;
+constexpr int barLayers = 60;
 constexpr float spacing = 0.08f; // from layer to layer
 constexpr float halfWidth = 1.6f, halfHeight = 0.9f;
 
@@ -23,7 +23,7 @@ Primitive makeLayer(int layer, Detail detail) {
     const int bars = detail.count(upright ? 32 : 18, 3);
     const float pitch = 2 * across / static_cast<float>(bars);
     // Half a bar's share of the pitch: thin in front, so that one sees far into the depth.
-    const float share = glm::mix(0.12f, 0.42f, static_cast<float>(layer) / (layers - 1));
+    const float share = glm::mix(0.12f, 0.42f, static_cast<float>(layer) / (barLayers - 1));
     Primitive bar;
     for (int i = 0; i < bars; ++i) {
         const float half = pitch * (share + random.between(-0.05f, 0.05f));
@@ -46,9 +46,9 @@ Scene makeLattice(Detail detail) {
     for (int i = 0; i < colours; ++i)
         b.add(matte(fmt::format("bars {}", i), glm::mix(front, back, static_cast<float>(i) / (colours - 1)),
                     0.6f));
-    for (int i = 0; i < layers; ++i) {
+    for (int i = 0; i < barLayers; ++i) {
         const std::string name = fmt::format("layer {}", i);
-        b.addInstance(name, b.addMesh(name, makeLayer(i, detail), i * colours / layers),
+        b.addInstance(name, b.addMesh(name, makeLayer(i, detail), i * colours / barLayers),
                       {0, 0, -static_cast<double>(spacing) * i});
     }
     Light sun;
