@@ -12,7 +12,7 @@ constexpr std::uint32_t groupSize = 64;
 constexpr std::uint32_t groupsPerRow = 32768;
 // That an invocation traces where the tracer takes many: enough that a lane seldom waits for others, few
 // enough that the loops of all together stay below what drivers allow (lib/iterations.glsl).
-constexpr std::uint32_t raysTogether = 16;
+constexpr std::uint32_t raysTogether = 32;
 } // namespace
 
 PassType RayQuery::type() {
