@@ -19,7 +19,11 @@ else()
 endif()
 
 if(KESTREL_CONFIG STREQUAL "release")
-    target_compile_options(kestrel_options INTERFACE -O2)
+    # Compiling with -O1 takes 0.6 to 0.7 of the time, and running what has no loops over pixels, texels or triangles as long as
+    # before. With less inlined, GCC can't tell what is initialized: that is -O2's to say.
+    set(loops $<BOOL:$<TARGET_PROPERTY:KESTREL_LOOPS>>)
+    target_compile_options(kestrel_options INTERFACE
+        $<IF:${loops},-O2,-O1> $<$<AND:$<NOT:${loops}>,$<CXX_COMPILER_ID:GNU>>:-Wno-maybe-uninitialized>)
 elseif(KESTREL_CONFIG STREQUAL "debug")
     target_compile_options(kestrel_options INTERFACE -O1 -g)
     target_compile_definitions(kestrel_options INTERFACE KESTREL_DEBUG=1)
