@@ -151,6 +151,19 @@ vec4 dataTexture(TextureRecord record, TexCoords coords) {
 
 #endif // MATERIAL_TEXTURES
 
+// Whether something of that alpha is there, by its material's cutoff (0 of opaque ones) and whether it is blended.
+bool alphaCovers(float alpha, float cutoff, bool blended) {
+#if defined(BLENDED_LEFT_OUT)
+    if (blended) return false;
+#elif defined(BLENDED_ALONE)
+    if (!blended) return false;
+#endif
+#if defined(BLENDED_KEPT) || defined(BLENDED_ALONE)
+    if (blended) return alpha > 0.0;
+#endif
+    return alpha >= cutoff;
+}
+
 // Whether the surface is there at all: the alpha test of Mask and Blend materials. `vertexAlpha` is 1 without vertex
 // colours. Reads the finest level always, so that a rasterized surface has the holes that rays see.
 bool materialCovers(uint material, vec2 texCoord, vec2 texCoord1, float vertexAlpha) {
@@ -162,17 +175,8 @@ bool materialCovers(uint material, vec2 texCoord, vec2 texCoord1, float vertexAl
 #ifdef MATERIAL_TEXTURES
     alpha *= colourTexture(scene_materials[material].baseColourTexture, texCoordsAtHit(texCoord, texCoord1)).a;
 #endif
-    uint flags = scene_materials[material].flags;
-    bool blended = (flags & materialFlagBlend) != 0u;
-#if defined(BLENDED_LEFT_OUT)
-    if (blended) return false;
-#elif defined(BLENDED_ALONE)
-    if (!blended) return false;
-#endif
-#if defined(BLENDED_KEPT) || defined(BLENDED_ALONE)
-    if (blended) return alpha > 0.0;
-#endif
-    return (flags & materialFlagMasked) == 0u || alpha >= scene_materials[material].alphaCutoff;
+    bool blended = (scene_materials[material].flags & materialFlagBlend) != 0u;
+    return alphaCovers(alpha, scene_materials[material].alphaCutoff, blended);
 #else
     return true;
 #endif

@@ -100,16 +100,7 @@ bool sceneCovers(uint triangle, vec2 barycentrics) {
     float w = 1.0 - u - v;
     vec2 texCoord = w * uintBitsToFloat(a.xy) + u * uintBitsToFloat(a.zw) + v * uintBitsToFloat(b.xy);
     float alpha = (w * c.x + u * c.y + v * c.z) * cutoutAlpha(texCoord, b.z, b.w);
-    bool blended = (b.z & cutoutBlend) != 0u;
-#if defined(BLENDED_LEFT_OUT)
-    if (blended) return false;
-#elif defined(BLENDED_ALONE)
-    if (!blended) return false;
-#endif
-#if defined(BLENDED_KEPT) || defined(BLENDED_ALONE)
-    if (blended) return alpha > 0.0;
-#endif
-    return alpha >= c.w;
+    return alphaCovers(alpha, c.w, (b.z & cutoutBlend) != 0u);
 #else
     return true;
 #endif

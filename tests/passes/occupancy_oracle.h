@@ -4,6 +4,7 @@
 #include "shared/occupancy.h"
 #include "shared/triangle_cell.h"
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace kestrel::test {
@@ -16,13 +17,20 @@ inline std::pair<glm::ivec3, glm::ivec3> cellsAround(const glm::vec3& a, const g
     return {glm::clamp(low - 1, 0, n - 1), glm::clamp(high + 1, 0, n - 1)};
 }
 
+// The corners of the triangle whose indices begin there, in cells.
+inline std::array<glm::vec3, 3> cornersAt(const Geometry& geometry, const shared::OccupancyGrid& grid,
+                                          size_t index) {
+    std::array<glm::vec3, 3> corners;
+    for (size_t k = 0; k < 3; ++k)
+        corners[k] = shared::cellsOf(grid, geometry.positions[geometry.indices[index + k]]);
+    return corners;
+}
+
 inline std::vector<std::uint32_t> oracleMap(const Geometry& geometry, const shared::OccupancyGrid& grid) {
     const int n = static_cast<int>(grid.resolution);
     std::vector<std::uint32_t> map(static_cast<size_t>(n) * n * n / 32);
     for (size_t i = 0; i < geometry.indices.size(); i += 3) {
-        glm::vec3 p[3];
-        for (size_t k = 0; k < 3; ++k)
-            p[k] = shared::cellsOf(grid, geometry.positions[geometry.indices[i + k]]);
+        const auto p = cornersAt(geometry, grid, i);
         const auto [first, last] = cellsAround(p[0], p[1], p[2], n);
         for (int z = first.z; z <= last.z; ++z)
             for (int y = first.y; y <= last.y; ++y)
@@ -41,9 +49,7 @@ inline std::vector<std::uint32_t> separatingOracle(const Geometry& geometry,
     const int n = static_cast<int>(grid.resolution);
     std::vector<std::uint32_t> map(static_cast<size_t>(n) * n * n / 32);
     for (size_t i = 0; i < geometry.indices.size(); i += 3) {
-        glm::vec3 p[3];
-        for (size_t k = 0; k < 3; ++k)
-            p[k] = shared::cellsOf(grid, geometry.positions[geometry.indices[i + k]]);
+        auto p = cornersAt(geometry, grid, i);
         const glm::vec3 back = shared::behindFace(p[0], p[1], p[2], inset);
         for (glm::vec3& corner : p) corner += back;
         const shared::TriangleWalk walk = shared::triangleWalk(p[0], p[1], p[2], n);
