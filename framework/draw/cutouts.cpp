@@ -1,11 +1,10 @@
 #include "draw/cutouts.h"
-#include "core/check.h"
 #include "core/log.h"
 #include "gl/loader.h"
 #include "scene/least_alpha.h"
 #include "scene/texture_transform.h"
 #include <algorithm>
-#include <bit>
+#include <compare>
 #include <map>
 #include <span>
 #include <utility>

@@ -1,7 +1,6 @@
 // Marks every cell that a triangle meets, and no other, or with SEPARATING those that it passes in the columns whose middles
-// meet it (shared/triangle_cell.h). Two steps, so that no invocation walks
-// far: one invocation a triangle marks the small ones and lists the large ones; with LARGE, `largeSlices` work groups
-// share the columns of a listed triangle.
+// meet it (shared/triangle_cell.h). Two steps, so that no invocation walks far: one invocation a triangle marks the small ones
+// and lists the large ones; with LARGE, `largeSlices` work groups share the columns of a listed triangle.
 //
 // Triangles with an alpha test occupy a cell where the test passes at the point of the triangle over the cell's centre.
 #include "lib/iterations.glsl"
