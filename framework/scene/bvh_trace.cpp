@@ -58,7 +58,7 @@ template<class Leaf>
 void traverse(const WideBvh& bvh, const TraceRay& ray, const float& tMax, Leaf&& leaf) {
     std::array<std::uint32_t, shared::wideStackSize> stack;
     std::size_t size = 0;
-    const shared::WideRay boxes = shared::wideRay(ray.origin, shared::inverseDirection(ray.direction));
+    const shared::WideRay boxes = shared::wideRay(shared::inverseDirection(ray.direction));
     std::uint32_t at = 0, waiting = 0;
     for (;;) {
         const WideItem& item = bvh.items[at];
@@ -67,7 +67,7 @@ void traverse(const WideBvh& bvh, const TraceRay& ray, const float& tMax, Leaf&&
         if ((item.texels[0].w & shared::wideNode) == 0) {
             if (leaf(triangleOf(item))) return;
         } else {
-            met = shared::wideMet(boxes, ray.tMin, tMax, item.texels[0], item.texels[1], item.texels[2],
+            met = shared::wideMet(boxes, ray.origin, ray.tMin, tMax, item.texels[0], item.texels[1], item.texels[2],
                                   entries);
         }
         std::uint32_t next = std::countr_zero(waiting);

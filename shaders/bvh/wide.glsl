@@ -23,30 +23,29 @@ uint M(stack)[wideStackSize];
 
 M(Walk) M(start)(Ray ray) {
     vec3 origin = offFace(ray.origin, ray.normal);
-    return M(Walk)(wideRay(origin, inverseDirection(ray.direction)), triangleRay(origin, ray.direction), 0u, 0u, 0);
+    return M(Walk)(wideRay(inverseDirection(ray.direction)), triangleRay(origin, ray.direction), 0u, 0u, 0);
 }
 
 // Looks at one item, a node or a triangle, and goes on to the next. On a driver that runs both sides of every branch for
 // all lanes, the test of a triangle beside the test of four boxes costs less than a loop for each, in which lanes wait
-// for each other. Whether it is a triangle that the ray meets.
+// for each other. What leads to the next item stands first and the triangle, which the next item does not wait for, last:
+// a processor tests it while the next item is on its way from memory. Whether it is a triangle that the ray meets.
 bool M(step)(inout M(Walk) walk, float tMin, float tMax, bool nearestFirst, out TriangleHit hit, out uvec3 ids) {
     int texel = int(walk.at);
+    uint above = M(stack)[max(walk.size - 1, 0)]; // to have it once it is known whether it is asked for
     uvec4 a = imageLoad(M(items), texel);
     uvec4 b = imageLoad(M(items), texel + 1);
     uvec4 c = imageLoad(M(items), texel + 2);
     ids = uvec3(a.w, b.w, c.w);
     bool node = (a.w & wideNode) != 0u;
-    bool met = !node && intersectTriangle(walk.sheared, tMin, tMax, uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz),
-                                          uintBitsToFloat(c.xyz), hit);
     ivec4 entries;
-    uint children = node ? wideMet(walk.boxes, tMin, tMax, a, b, c, entries) : 0u;
+    uint children = node ? wideMet(walk.boxes, walk.sheared.origin, tMin, tMax, a, b, c, entries) : 0u;
 
     // Down, sideways or up: what waits is kept always, and counted where something lies below and beside.
     bool down = children != 0u;
     bool beside = (walk.waiting & 15u) != 0u;
     M(stack)[walk.size] = walk.waiting;
     walk.size += down ? (beside ? 1 : 0) : (beside ? 0 : -1);
-    uint above = M(stack)[max(walk.size, 0)];
     uint waiting = down ? wideChildren(b.w, children) : (beside ? walk.waiting : above);
     uint bit = waiting & (~waiting + 1u);
     if (nearestFirst) {
@@ -59,19 +58,22 @@ bool M(step)(inout M(Walk) walk, float tMin, float tMax, bool nearestFirst, out 
     bit &= 15u;
     walk.at = (waiting >> 4u) + wideTexelOf(bit);
     walk.waiting = waiting & ~bit;
-    return met;
+    return !node && intersectTriangle(walk.sheared, tMin, tMax, uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz),
+                                      uintBitsToFloat(c.xyz), hit);
 }
 
 #ifdef PROVIDES_TRACER
 
 // Conditions stand at the ends of loops: at the beginning they cost a pass through the body for nothing, since a driver that
 // masks lanes leaves a loop at its end alone. What a loop finds is assigned beside its `break`: llvmpipe (Mesa 22.3.6) goes on
-// computing what a lane that has left would have assigned, and after nested loops gives that.
+// computing what a lane that has left would have assigned, and after nested loops gives that; also where one `break` stands for
+// both ends, as in `if (met || walk.size < 0)` (closest hits through masks are wrong then).
 
 #ifdef MATERIAL_MASKED
 // Walks to the next triangle that the ray meets. The alpha test stands outside of this loop: in it, all lanes would pay for
 // it at every item.
-bool M(next)(inout M(Walk) walk, float tMin, float tMax, bool nearestFirst, out TriangleHit hit, out uint triangle, out bool tested) {
+bool M(next)(inout M(Walk) walk, float tMin, float tMax, bool nearestFirst, out TriangleHit hit, out uint triangle,
+             out bool tested) {
     bool found = false;
     hit = TriangleHit(0.0, 0.0, 0.0);
     triangle = 0xffffffffu;

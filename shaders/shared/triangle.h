@@ -5,7 +5,7 @@
 SHARED_BEGIN
 
 #ifdef __cplusplus
-using glm::floatBitsToInt;
+using glm::floatBitsToInt, glm::intBitsToFloat;
 #endif
 
 struct TriangleHit {
@@ -68,10 +68,10 @@ inline vec2 besideRay(TriangleRay ray, vec3 point) {
 inline float edgeArea(vec2 b, vec2 c, OUT(int) side) {
     UNCONTRACTED float p = c.x * b.y;
     UNCONTRACTED float q = c.y * b.x;
-    UNCONTRACTED float order = q - p;
-    const float beside = c.y != b.y ? b.y - c.y : c.x - b.x;
-    side = floatBitsToInt(p != q ? order : beside);
-    return p - q;
+    UNCONTRACTED float area = p - q;
+    const float beside = c.y != b.y ? c.y - b.y : b.x - c.x;
+    side = floatBitsToInt(p != q ? area : beside);
+    return area;
 }
 
 // Is there an intersection with tMin <= t <= tMax, from either side? An edge or vertex that triangles share belongs to
@@ -91,10 +91,12 @@ inline bool intersectTriangle(TriangleRay ray, float tMin, float tMax, vec3 p0, 
     const vec3 normal = cross(b - a, c - a);
     const float slope = dot(normal, ray.direction);
     // On the plane, but no farther off than the corners are: of a triangle seen along its plane the slope is rounding.
+    // By bits, which are ordered as the floats are from 0 up; what is told wrongly lies behind the origin either way.
     const vec3 depth = vec3(axisLast(a, ray.axis).z, axisLast(b, ray.axis).z, axisLast(c, ray.axis).z) * ray.inverse;
-    const float lowest = min(depth.x, min(depth.y, depth.z));
-    const float highest = max(depth.x, max(depth.y, depth.z));
-    const float t = slope != 0.0f ? clamp(dot(normal, a) / slope, lowest, highest) : lowest;
+    const int lowest = min(floatBitsToInt(depth.x), min(floatBitsToInt(depth.y), floatBitsToInt(depth.z)));
+    const int highest = max(floatBitsToInt(depth.x), max(floatBitsToInt(depth.y), floatBitsToInt(depth.z)));
+    const int plane = max(min(floatBitsToInt(dot(normal, a) / slope), highest), lowest);
+    const float t = intBitsToFloat(slope != 0.0f ? plane : lowest);
     const float sum = wa + wb + wc;
     hit.t = t;
     hit.u = wb / sum;

@@ -15,7 +15,7 @@
 SHARED_BEGIN
 
 #ifdef __cplusplus
-using glm::floatBitsToInt, glm::uintBitsToFloat;
+using glm::floatBitsToInt, glm::intBitsToFloat, glm::uintBitsToFloat;
 #endif
 
 // Words of children that wait; a walk keeps at most one a level.
@@ -34,14 +34,12 @@ inline uint wideTexelOf(uint bit) { return (bit & 6u) | ((bit & 6u) >> 1u) | (bi
 
 // What a ray's tests of boxes have in common.
 struct WideRay {
-    vec3 origin;
     vec3 inverse;   // inverseDirection()
     uvec3 backward; // all ones for an axis that the ray runs down
 };
 
-inline WideRay wideRay(vec3 origin, vec3 inverse) {
+inline WideRay wideRay(vec3 inverse) {
     WideRay ray;
-    ray.origin = origin;
     ray.inverse = inverse;
     ray.backward = uvec3(inverse.x < 0.0f ? 0xffffffffu : 0u, inverse.y < 0.0f ? 0xffffffffu : 0u,
                          inverse.z < 0.0f ? 0xffffffffu : 0u);
@@ -53,7 +51,7 @@ inline WideRay wideRay(vec3 origin, vec3 inverse) {
 inline bool wideMeets(vec3 near, vec3 far, int tMin, int tMax, OUT(int) entry) {
     entry = max(max(floatBitsToInt(near.x), floatBitsToInt(near.y)), max(floatBitsToInt(near.z), tMin));
     const int leave = min(min(floatBitsToInt(far.x), floatBitsToInt(far.y)), min(floatBitsToInt(far.z), tMax));
-    return entry <= leave;
+    return entry <= floatBitsToInt(intBitsToFloat(leave) * 1.000001f);
 }
 
 // Which children of a node the ray's interval meets (0 <= tMin), a bit each, and where it enters them (as bits).
@@ -61,33 +59,30 @@ inline bool wideMeets(vec3 near, vec3 far, int tMin, int tMax, OUT(int) entry) {
 // Nothing is missed that the exact box of the triangles would meet: planes lie outside the box by wideMargin of a step at
 // least, which is more than rounding takes where the node is near (the products then have up to 2^14 steps), and far off,
 // where rounding is a share of the distance, the far ends are widened as in intersectBox().
-inline uint wideMet(WideRay ray, float tMin, float tMax, uvec4 a, uvec4 b, uvec4 c, OUT(ivec4) entries) {
-    const float widened = 1.000001f;
+inline uint wideMet(WideRay ray, vec3 origin, float tMin, float tMax, uvec4 a, uvec4 b, uvec4 c, OUT(ivec4) entries) {
     const vec3 unit = vec3(uintBitsToFloat((a.w << 23u) & 0x7f800000u), uintBitsToFloat((a.w << 15u) & 0x7f800000u),
                            uintBitsToFloat((a.w << 7u) & 0x7f800000u));
-    const vec3 start = (vec3(uintBitsToFloat(a.x), uintBitsToFloat(a.y), uintBitsToFloat(a.z)) - ray.origin) * ray.inverse;
+    const vec3 start = (vec3(uintBitsToFloat(a.x), uintBitsToFloat(a.y), uintBitsToFloat(a.z)) - origin) * ray.inverse;
     const vec3 step = unit * ray.inverse;
-    const vec3 farStart = start * widened;
-    const vec3 farStep = step * widened;
     const uvec3 low = uvec3(b.x, b.y, b.z);
     const uvec3 high = uvec3(c.x, c.y, c.z);
     const uvec3 change = (low ^ high) & ray.backward;
     const uvec3 near = low ^ change;
     const uvec3 far = high ^ change;
     const int first = floatBitsToInt(tMin);
-    const int last = floatBitsToInt(tMax * widened);
-    uint met = wideMeets(vec3(near & 255u) * step + start, vec3(far & 255u) * farStep + farStart, first, last, entries.x)
+    const int last = floatBitsToInt(tMax);
+    uint met = wideMeets(vec3(near & 255u) * step + start, vec3(far & 255u) * step + start, first, last, entries.x)
                    ? 1u
                    : 0u;
-    met |= wideMeets(vec3((near >> 8u) & 255u) * step + start, vec3((far >> 8u) & 255u) * farStep + farStart, first, last,
+    met |= wideMeets(vec3((near >> 8u) & 255u) * step + start, vec3((far >> 8u) & 255u) * step + start, first, last,
                      entries.y)
                ? 2u
                : 0u;
-    met |= wideMeets(vec3((near >> 16u) & 255u) * step + start, vec3((far >> 16u) & 255u) * farStep + farStart, first, last,
+    met |= wideMeets(vec3((near >> 16u) & 255u) * step + start, vec3((far >> 16u) & 255u) * step + start, first, last,
                      entries.z)
                ? 4u
                : 0u;
-    met |= wideMeets(vec3(near >> 24u) * step + start, vec3(far >> 24u) * farStep + farStart, first, last, entries.w) ? 8u : 0u;
+    met |= wideMeets(vec3(near >> 24u) * step + start, vec3(far >> 24u) * step + start, first, last, entries.w) ? 8u : 0u;
     return met & c.w;
 }
 
