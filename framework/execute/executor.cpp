@@ -125,6 +125,12 @@ bool Executor::run(const FrameScene& frame, Causes events) {
     return true;
 }
 
+void Executor::rewind() {
+    for (size_t i = 0; i < states_.size(); ++i)
+        if (dependsOnFrames(plan().passes[i])) states_[i].pending = Causes::All;
+    lastEvents_ = Causes::All;
+}
+
 void Executor::abandonFrame() {
     unfinished_ = false;
     clock_.reset(); // it may stand in the middle of a step

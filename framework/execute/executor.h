@@ -50,6 +50,8 @@ public:
     bool run(const FrameScene& frame, Causes events);
     // After run() said false: the frame is given up. What did not run stays due.
     void abandonFrame();
+    // The next frame is a first one but for what depends on the scene alone, which stays as it is.
+    void rewind();
 
     [[nodiscard]] const FrameReport& report() const { return report_; }
     [[nodiscard]] FrameReport& report() { return report_; }

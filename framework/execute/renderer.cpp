@@ -181,6 +181,7 @@ void Renderer::setScene(Scene scene) {
     freeCamera_.reset();
     geometryMade_ = false;
     lastConditions_.reset();
+    rewoundFrom_.reset();
     time_ = scene_.startTime;
 }
 
@@ -209,7 +210,18 @@ void Renderer::restart() {
     index_ = 0;
     time_ = scene_.startTime;
     lastConditions_.reset();
+    rewoundFrom_.reset();
     geometryMade_ = false;
+}
+
+void Renderer::rewind() {
+    if (lastConditions_) {
+        rewoundFrom_ = std::move(lastConditions_);
+        executor_->rewind();
+    }
+    index_ = 0;
+    time_ = scene_.startTime;
+    lastConditions_.reset();
 }
 
 std::string Renderer::cameraName() const {
@@ -303,7 +315,9 @@ const FrameRecord& Renderer::frame() {
     }
     const FrameConditions now{frame.info.camera, frame.info.cameraState, time_,
                               jumped_,           options_.size,          lights_};
-    const Causes events = lastConditions_ ? eventsBetween(*lastConditions_, now, facts_) : Causes::All;
+    const Causes events = lastConditions_ ? eventsBetween(*lastConditions_, now, facts_)
+                          : rewoundFrom_  ? eventsBetween(*rewoundFrom_, now, facts_)
+                                          : Causes::All;
 
     const int recompiled = runFrame(frame, events);
     if (options_.timing || options_.finishFrames) gl::finish();
@@ -312,6 +326,7 @@ const FrameRecord& Renderer::frame() {
     record_ = {index_,     millisecondsSince(start), events, executor_->samples(), executor_->report().values,
                recompiled, executor_->report().bad};
     lastConditions_ = now;
+    rewoundFrom_.reset();
     ++index_;
     if (!record_.bad.empty() && !options_.keepBad) {
         std::vector<Problem> problems;

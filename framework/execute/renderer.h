@@ -79,6 +79,9 @@ public:
     // Seconds of the scene from frame to frame, at least 0; absent: 1 / Scene::frameRate.
     void setTimeStep(std::optional<double> seconds) { options_.timeStep = seconds; }
     void restart(); // frame index 0, the scene's first time, nothing kept
+    // The same pictures as after restart(), sooner: what is made of the scene alone (hierarchies, maps)
+    // stays.
+    void rewind();
     // Compiles anew if a shader file, or a file that a property names (of unit "file"), changed since it was
     // read; true if so. With an error in it the plan before stays and the InputError is thrown, once a
     // change.
@@ -129,7 +132,8 @@ private:
     bool paused_ = false, geometryMade_ = false;
     std::optional<double> jump_;
     bool jumped_ = false;
-    std::optional<FrameConditions> lastConditions_;
+    std::optional<FrameConditions> lastConditions_; // none: the next frame is the first
+    std::optional<FrameConditions> rewoundFrom_;    // what stands was made under
     FrameRecord record_;
     double compileMs_ = 0;
 };

@@ -44,6 +44,11 @@ void schedule(const Plan& plan, Causes events, Causes lastEvents, std::vector<Pa
     }
 }
 
+bool dependsOnFrames(const PlanPass& pass) {
+    return pass.always ||
+           any(pass.depends & (Causes::Frame | Causes::Camera | Causes::Cut | Causes::Cameras));
+}
+
 Causes inputCauses(const PlanPass& pass, std::string_view port, const std::vector<PassState>& states) {
     const auto found = pass.inputPasses.find(std::string(port));
     if (found == pass.inputPasses.end()) return Causes::None;

@@ -41,6 +41,10 @@ struct PassState {
 // again, its `changed` stays. `lastEvents` are those of the frame before.
 void schedule(const Plan& plan, Causes events, Causes lastEvents, std::vector<PassState>& states);
 
+// Whether what a pass has made hangs on the frames before: it runs for their number or their camera, or
+// always. What is behind it in the graph does so too, by its inputs.
+bool dependsOnFrames(const PlanPass& pass);
+
 // Why an input port changed in this frame: the causes of all passes that stand behind it.
 Causes inputCauses(const PlanPass& pass, std::string_view port, const std::vector<PassState>& states);
 

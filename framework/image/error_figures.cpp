@@ -31,7 +31,8 @@ ErrorFigures measureError(const Image& reference, const Image& test, const Error
     figures.mse = meanSquaredError(expected, actual, options.mask);
     figures.rmse = std::sqrt(figures.mse);
     figures.psnr = peakSignalToNoise(figures.mse, range);
-    figures.ssim = structuralSimilarity(expected, actual, options.mask, range);
+    if (options.ssim) figures.ssim = structuralSimilarity(expected, actual, options.mask, range);
+    if (!options.flip) return figures;
     FlipResult result = flip(expected, actual,
                              {.pixelsPerDegree = options.pixelsPerDegree, .hdr = options.hdr}, options.mask);
     figures.flip = result.figures;

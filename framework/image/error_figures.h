@@ -20,6 +20,8 @@ struct ErrorOptions {
     bool hdr = false;
     float pixelsPerDegree = FlipOptions{}.pixelsPerDegree;
     const Image* mask = nullptr; // pixels count where it is greater than 0.5; null: all
+    // Left out where nobody asks for them, since they take most of the time: they stay 0.
+    bool ssim = true, flip = true;
 };
 
 // The errors of `test` against `reference`. Alpha is left out; where the channels differ, both are taken as

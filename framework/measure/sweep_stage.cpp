@@ -126,7 +126,7 @@ std::unique_ptr<Renderer> SweepStage::open(const SweepPoint& point) {
 void SweepStage::change(Renderer& renderer, const SweepPoint& point) const {
     renderer.setGraph(
         sweepGraph(sweep_, point.graph, point.settings, outputsOf(point), run_.registry, point.where));
-    renderer.restart();
+    renderer.rewind();
 }
 
 // When the last frame of a moving picture is.
@@ -198,7 +198,8 @@ void SweepStage::traceReference() {
 
 // ---- errors
 
-SweepComparison SweepStage::compare(Renderer& renderer, const SweepPoint& point, Image* flipMap) const {
+SweepComparison SweepStage::compare(Renderer& renderer, const SweepPoint& point, Image* flipMap,
+                                    const std::string& only) const {
     SweepComparison result;
     if (point.ray) {
         const std::vector<std::byte> rays = renderer.readBytes(sweep_.rays->rays);
@@ -210,9 +211,12 @@ SweepComparison SweepStage::compare(Renderer& renderer, const SweepPoint& point,
         return result;
     }
     if (record_.nothingCounts) return result;
-    const ErrorFigures figures =
-        measureError(reference_, renderer.read(point.output),
-                     {.hdr = sweep_.hdr, .mask = mask_.empty() ? nullptr : &mask_}, flipMap);
+    const ErrorFigures figures = measureError(reference_, renderer.read(point.output),
+                                              {.hdr = sweep_.hdr,
+                                               .mask = mask_.empty() ? nullptr : &mask_,
+                                               .ssim = only.empty() || only == "ssim",
+                                               .flip = only.empty() || only == "flip"},
+                                              flipMap);
     result.errors = SweepErrors{figures.mse, figures.ssim, figures.flip.mean, std::nullopt};
     if (std::isfinite(figures.psnr)) result.errors->psnr = figures.psnr;
     return result;

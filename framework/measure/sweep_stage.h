@@ -38,14 +38,15 @@ public:
 
     // A renderer of the point before its first frame. Throws InputError.
     [[nodiscard]] std::unique_ptr<Renderer> open(const SweepPoint& point);
-    // Makes a renderer of this scene one of another point's, with nothing kept of its frames. Throws
-    // InputError.
+    // Makes a renderer of this scene one of another point's, with nothing kept of its frames; what is made of
+    // the scene alone, and made alike by the other point, is kept. Throws InputError.
     void change(Renderer& renderer, const SweepPoint& point) const;
 
     // What the last frame shows against the reference; the FLIP error map where it is asked for. A reference
-    // of nothing, and a mask that is 0 everywhere, give no figures.
+    // of nothing, and a mask that is 0 everywhere, give no figures. `only`: the one error that is wanted
+    // ("mse", "rmse", "ssim" or "flip"); those that take long are left out beside it, and stay 0.
     [[nodiscard]] SweepComparison compare(Renderer& renderer, const SweepPoint& point,
-                                          Image* flipMap = nullptr) const;
+                                          Image* flipMap = nullptr, const std::string& only = {}) const;
     // The error of a point's picture, `first`, taken apart: renders it again from another seed, its exact
     // tracing from both, and once a scene the reference from another seed. Nothing where no pixel counts.
     // Throws InputError.

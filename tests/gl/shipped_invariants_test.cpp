@@ -91,11 +91,14 @@ TEST_P(EveryGraph, SharingMemoryAndRunningAgainChangeNoBit) {
     const auto alone = outputs(GetParam(), scene(), unshared), again = outputs(GetParam(), scene(), {});
     made.restart();
     const auto restarted = outputsOf(made);
+    made.rewind();
+    const auto rewound = outputsOf(made);
     ASSERT_FALSE(first.empty());
     for (const auto& [port, image] : first) {
         EXPECT_EQ(apart(image, alone.at(port)).largest, 0) << port << " with memory of its own";
         EXPECT_EQ(apart(image, again.at(port)).largest, 0) << port << " run again";
         EXPECT_EQ(apart(image, restarted.at(port)).largest, 0) << port << " started again";
+        EXPECT_EQ(apart(image, rewound.at(port)).largest, 0) << port << " rewound";
     }
 }
 
@@ -151,6 +154,8 @@ TEST_F(Invariants, AStaticSceneBuildsItsMapAndItsHierarchyOnce) {
     for (const auto& [type, steps] : first) EXPECT_GT(steps, 0) << type;
     for (int i = 0; i < 3; ++i)
         for (const auto& [type, steps] : builds()) EXPECT_EQ(steps, 0) << type << " in frame " << i + 1;
+    made.rewind();
+    for (const auto& [type, steps] : builds()) EXPECT_EQ(steps, 0) << type << " rewound";
     made.restart();
     EXPECT_EQ(builds(), first);
 }

@@ -174,6 +174,18 @@ TEST(ErrorFigures, DependOnTheRangeOfAnHdrReference) {
     EXPECT_DOUBLE_EQ(hdr.psnr, 10 * std::log10(100 * 64.0));
 }
 
+TEST(ErrorFigures, AreWithoutWhatNobodyAsksFor) {
+    const Image reference = pattern(16, 16, 3, 2), test = pattern(16, 16, 3, 8);
+    const ErrorFigures all = measureError(reference, test);
+    const ErrorFigures squares = measureError(reference, test, {.ssim = false, .flip = false});
+    EXPECT_EQ(squares.mse, all.mse);
+    EXPECT_EQ(squares.rmse, all.rmse);
+    EXPECT_EQ(squares.ssim, 0);
+    EXPECT_EQ(squares.flip.mean, 0);
+    EXPECT_EQ(measureError(reference, test, {.flip = false}).ssim, all.ssim);
+    EXPECT_EQ(measureError(reference, test, {.ssim = false}).flip.mean, all.flip.mean);
+}
+
 TEST(ErrorFigures, TakeGreyForEqualColoursAndLeaveAlphaOut) {
     const Image grey = pattern(16, 16, 1, 2);
     const Image other = pattern(16, 16, 1, 8);

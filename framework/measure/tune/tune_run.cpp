@@ -35,7 +35,8 @@ public:
             for (int i = 0; i < point.frames; ++i) static_cast<void>(renderer.frame());
             SweepRow row;
             row.ray = point.ray;
-            const SweepComparison comparison = stage().compare(renderer, point);
+            const SweepComparison comparison =
+                stage().compare(renderer, point, nullptr, run_.sweep.plotError);
             row.picture.errors = comparison.errors;
             row.picture.rays = comparison.rays;
             return errorOf(row, run_.sweep.plotError);
