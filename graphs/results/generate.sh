@@ -10,9 +10,27 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 kestrel=${KESTREL:-$here/../../build/bin/kestrel}
 
+# Links to the sections of a page.
+contents() {
+    sed -n 's/^## //p' "$1" | while read -r title; do
+        anchor=$(tr '[:upper:]' '[:lower:]' <<<"$title" | sed 's/[^a-z0-9 _-]//g; s/ /-/g')
+        echo "- [$title](#$anchor)"
+    done
+}
+
 page() {
+    local body
+    body=$(mktemp)
+    sections >"$body"
     cat "$here/head.md"
     echo
+    contents "$body"
+    echo
+    cat "$body"
+    rm "$body"
+}
+
+sections() {
     cat "$here/truth.md"
     for file in "$here"/*.json; do
         [ -e "$file" ] || continue
