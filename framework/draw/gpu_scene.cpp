@@ -118,7 +118,8 @@ bool storeVertices(gl::Buffer& buffer, const Geometry& geometry) {
 constexpr std::string_view colourTextures = "scene_colour_textures";
 constexpr std::string_view dataTextures = "scene_data_textures";
 constexpr std::string_view firstTriangle = "scene_first_triangle";
-constexpr std::string_view firstMasked = "scene_first_masked";
+constexpr std::string_view firstMasked = "scene_first_masked", cutouts = "scene_cutouts",
+                           cutoutAlpha = "scene_cutout_alpha";
 constexpr std::string_view materialsBlock = "Materials";
 constexpr std::string_view lightsBlock = "Lights";
 
@@ -149,9 +150,9 @@ void bindTexels(const gl::Program& program, std::string_view name, const gl::Buf
 } // namespace
 
 GpuScene::GpuScene(const Scene& scene)
-    : colours_(scene, TextureRole::Colour)
-    , data_(scene, TextureRole::Data)
-    , cutouts_(scene, colours_) {
+    : scene_(scene)
+    , colours_(scene, TextureRole::Colour)
+    , data_(scene, TextureRole::Data) {
     std::vector<MaterialRecord> records;
     for (const Material& material : flattenedMaterials(scene))
         records.push_back(recordOf(scene, material, colours_, data_));
@@ -159,6 +160,7 @@ GpuScene::GpuScene(const Scene& scene)
     setLights({});
     update(Geometry{});
     hasTopology_ = false;
+    geometry_ = nullptr;
 }
 
 void GpuScene::update(const Geometry& geometry) {
@@ -186,7 +188,8 @@ bool GpuScene::uploadTopology(const Geometry& geometry) {
                         geometry.materials[i]};
     const bool fresh = store(indices_, bytesOf(geometry.indices), "scene indices");
     store(triangles_, bytesOf(triangles), "scene triangles");
-    cutouts_.setTriangles(geometry);
+    geometry_ = &geometry;
+    if (cutouts_) cutouts_->setTriangles(geometry);
     std::copy(std::begin(geometry.ranges), std::end(geometry.ranges), std::begin(ranges_));
     hasTopology_ = true;
     turns_ = geometry.turns;
@@ -231,9 +234,7 @@ std::vector<GpuScene::TexelSource> GpuScene::texelSources() const {
             {"scene_previous_positions", "ScenePreviousPositions", moves_ ? previousPositions_ : positions_,
              Format::RGBA32F},
             {"scene_vertices", "SceneVertices", vertices_, Format::RGBA32F},
-            {"scene_triangles", "SceneTriangles", triangles_, Format::RGBA32UI},
-            {"scene_cutouts", "", cutouts_.records(), Format::RGBA32UI},
-            {"scene_cutout_alpha", "", cutouts_.alpha(), Format::R32UI}};
+            {"scene_triangles", "SceneTriangles", triangles_, Format::RGBA32UI}};
 }
 
 bool GpuScene::reserves(std::string_view name) {
@@ -241,22 +242,33 @@ bool GpuScene::reserves(std::string_view name) {
                                           "scene_vertices",  "scene_triangles",
                                           "ScenePositions",  "ScenePreviousPositions",
                                           "SceneVertices",   "SceneTriangles",
-                                          "scene_cutouts",   "scene_cutout_alpha",
+                                          cutouts,           cutoutAlpha,
                                           firstMasked,       colourTextures,
                                           dataTextures,      firstTriangle,
                                           materialsBlock,    lightsBlock};
     return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-void GpuScene::bind(const gl::Program& program) const {
+void GpuScene::bindCutouts(const gl::Program& program) {
+    const int first = program.uniform(firstMasked);
+    if (first < 0 && !program.slot(cutouts) && !program.slot(cutoutAlpha)) return;
+    if (!cutouts_) {
+        cutouts_.emplace(scene_, colours_);
+        if (geometry_ != nullptr) cutouts_->setTriangles(*geometry_);
+    }
+    bindTexels(program, cutouts, cutouts_->records(), Format::RGBA32UI);
+    bindTexels(program, cutoutAlpha, cutouts_->alpha(), Format::R32UI);
+    if (first >= 0) glProgramUniform1ui(program.name(), first, cutouts_->first());
+}
+
+void GpuScene::bind(const gl::Program& program) {
     bindBlock(program, materialsBlock, materials_);
     bindBlock(program, lightsBlock, lights_);
     for (const TexelSource& source : texelSources()) {
-        if (!source.block.empty()) bindBlock(program, source.block, source.buffer);
+        bindBlock(program, source.block, source.buffer);
         bindTexels(program, source.uniform, source.buffer, source.format);
     }
-    if (const int first = program.uniform(firstMasked); first >= 0)
-        glProgramUniform1ui(program.name(), first, cutouts_.first());
+    bindCutouts(program);
     if (const auto slot = program.slot(colourTextures)) colours_.bind(*slot);
     if (const auto slot = program.slot(dataTextures)) data_.bind(*slot);
 }
@@ -287,7 +299,7 @@ void GpuScene::draw(const DrawState& state, const std::vector<TriangleClass>& cl
 }
 
 std::uint64_t GpuScene::bytes() const {
-    std::uint64_t total = colours_.bytes() + data_.bytes() + cutouts_.bytes();
+    std::uint64_t total = colours_.bytes() + data_.bytes() + (cutouts_ ? cutouts_->bytes() : 0);
     for (const gl::Buffer* buffer :
          {&materials_, &lights_, &positions_, &previousPositions_, &vertices_, &indices_, &triangles_})
         total += buffer->bytes();

@@ -7,6 +7,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "scene/geometry.h"
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -14,19 +15,22 @@ namespace kestrel {
 
 class GpuScene {
 public:
-    // Uploads materials and textures. Throws MachineError where the device has not the memory or the layers.
+    // Uploads materials and textures. The scene must outlive this. Throws MachineError where the device has
+    // not the memory or the layers.
     explicit GpuScene(const Scene& scene);
+    explicit GpuScene(Scene&&) = delete;
 
     // The triangles at another time of the scene: the first call sends everything, later ones what moves
-    // (Geometry::moving), and the triangles again where instances were turned over (Geometry::turns).
+    // (Geometry::moving), and the triangles again where instances were turned over (Geometry::turns). The
+    // geometry must stay until the next call.
     void update(const Geometry& geometry);
     void setLights(const std::vector<LightState>& lights);
 
     // Whether a name of a block, sampler, image or uniform is one that bind() or draw() serves.
     [[nodiscard]] static bool reserves(std::string_view name);
-    // Binds all reserved names that the program has. Throws MachineError if the program reads texel buffers
-    // of more texels than the device can address.
-    void bind(const gl::Program& program) const;
+    // Binds all reserved names that the program has; cutouts are made for the first that has theirs. Throws
+    // MachineError if the program reads texel buffers of more texels than the device can address.
+    void bind(const gl::Program& program);
     // One draw call a class; vertex inputs are those of lib/vertex.glsl. The program must be in use and
     // bound, the framebuffer and viewport set. Double-sided classes are never culled.
     void draw(const DrawState& state, const std::vector<TriangleClass>& classes,
@@ -42,11 +46,14 @@ private:
         Format format;
     };
     [[nodiscard]] std::vector<TexelSource> texelSources() const;
+    void bindCutouts(const gl::Program& program);
     bool uploadTopology(const Geometry& geometry); // whether the buffer of indices is a new one
     void linkVertexArray();
 
+    const Scene& scene_;
+    const Geometry* geometry_ = nullptr; // of the topology
     SceneTextures colours_, data_;
-    Cutouts cutouts_;
+    std::optional<Cutouts> cutouts_; // once they are asked for: their alpha takes 4 bytes a texel
     gl::Buffer materials_, lights_;
     gl::Buffer positions_, previousPositions_, vertices_, indices_, triangles_;
     gl::VertexArray vertexArray_;
