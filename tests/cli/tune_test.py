@@ -122,7 +122,7 @@ def test_tells_what_is_free_and_refuses_what_cannot_be():
         out = done("tune", tiny(here), "--list").out
         assert "bitmask: horizons.radius=4 horizons.method=bitmask\n" in out and "BVH: nothing is free\n" in out
         listed = done("tune", tiny(here), "--list", "--json").json()
-        assert listed[1] == {"variant": "HBAO", "start": ["hbao.radius=0.75"]} and listed[2]["start"] == []
+        assert listed[1] == {"variant": "HBAO", "start": ["hbao.radius=0.81"]} and listed[2]["start"] == []
         done("sweep", tiny(here), "--list")
         variant = TINY["variants"][0]
         wrong = {**variant, "tune": {"horizon.radius": [0.1, 2], "horizons.raduis": [0.1, 2], "horizons.steps": [0, 100],

@@ -280,7 +280,8 @@ TEST_F(Horizons, WithLayersABorderPixelIsAsInALargerFrame) {
     const int more = 32, border = 8;
     const Extent small{112, 64, 1}, large{small.width + 2 * more, small.height + 2 * more, 1};
     const auto image = [&](const Extent& size) {
-        Graph made = shippedGraph("horizon_ao", {"horizons.thickness_from=layers"});
+        Graph made = shippedGraph(
+            "horizon_ao", {"horizons.thickness_from=layers", "horizons.radius=0.5", "horizons.exponent=1"});
         made.outputs = {{{"horizons", "visibility"}, {}}};
         RenderOptions options;
         options.size = size;

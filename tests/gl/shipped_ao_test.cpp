@@ -31,13 +31,13 @@ TEST_F(Ao, AnOpenPlaneSeesTheWholeSkyAtAnyTilt) {
         for (const float value : visibility(scene, byBvh, 4).values) ASSERT_EQ(value, 1.0f) << degrees;
         EXPECT_GE(meanWhere(visibility(scene, {"roma.offset=1.5"}, 32), mask), 0.995)
             << "ROMA, tilted by " << degrees;
-        // Half a cell off the surface, as by default, a plane of two sides meets itself: measured 0.916 for
-        // one between two layers of cells, which both hold it, and 0.931 and more at other tilts, where cells
-        // over each other do; where cells are rasterized 0.975.
-        EXPECT_GE(meanWhere(visibility(scene, {}, 32), mask), degrees == 0 ? 0.9 : 0.925)
+        // Two thirds of a cell off the surface, where the mean error of scenes is least, a plane of two sides
+        // meets itself: measured 0.879 for one between two layers of cells, which both hold it, and 0.904 and
+        // more at other tilts, where cells over each other do; where cells are rasterized 0.97.
+        EXPECT_GE(meanWhere(visibility(scene, {}, 32), mask), degrees == 0 ? 0.87 : 0.895)
             << "ROMA, tilted by " << degrees;
         EXPECT_GE(meanWhere(visibility(scene, {"bom.method=three_axis"}, 32), mask),
-                  degrees == 0 ? 0.9 : 0.97)
+                  degrees == 0 ? 0.87 : 0.97)
             << "ROMA, tilted by " << degrees;
     }
 }
@@ -165,10 +165,10 @@ TEST_F(Ao, OnTheTowerRomaStaysAsNearEmbreeAsItWasMeasured) {
         const Image picture = render(shippedGraph("ray_ao", settings), scene, mean, 16, {}, size);
         return measureError(reference, picture, {.mask = &mask}).flip.mean;
     };
-    // Measured 0.1889 (0.1810 where cells are rasterized along three axes), and 0.0882 by the BVH. Another
+    // Measured 0.2226 (0.1940 where cells are rasterized along three axes), and 0.0882 by the BVH. Another
     // driver's rounding moves single rays at edges, which is a hundredth of either; a map whose one-sided
-    // surfaces are not set back has 0.2222 and must not pass.
-    EXPECT_NEAR(flip({}), 0.1889, 0.003);
+    // surfaces are not set back has 0.2678 and must not pass.
+    EXPECT_NEAR(flip({}), 0.2226, 0.003);
     EXPECT_NEAR(flip(byBvh), 0.0882, 0.002);
 }
 
