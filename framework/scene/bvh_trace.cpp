@@ -67,8 +67,8 @@ void traverse(const WideBvh& bvh, const TraceRay& ray, const float& tMax, Leaf&&
         if ((item.texels[0].w & shared::wideNode) == 0) {
             if (leaf(triangleOf(item))) return;
         } else {
-            met = shared::wideMet(boxes, ray.origin, ray.tMin, tMax, item.texels[0], item.texels[1], item.texels[2],
-                                  entries);
+            met = shared::wideMet(boxes, ray.origin, ray.tMin, tMax, item.texels[0], item.texels[1],
+                                  item.texels[2], entries);
         }
         std::uint32_t next = std::countr_zero(waiting);
         if (met != 0) {
