@@ -165,6 +165,7 @@ GpuScene::GpuScene(const Scene& scene)
 
 void GpuScene::update(const Geometry& geometry) {
     KESTREL_CHECK_EQ(geometry.positions.size(), geometry.attributes.size());
+    geometry_ = &geometry;
     bool fresh = storePositions(positions_, geometry.positions, geometry.moving, "scene positions");
     fresh |= storeVertices(vertices_, geometry);
     const bool moves = !geometry.previousPositions.empty();
@@ -188,7 +189,6 @@ bool GpuScene::uploadTopology(const Geometry& geometry) {
                         geometry.materials[i]};
     const bool fresh = store(indices_, bytesOf(geometry.indices), "scene indices");
     store(triangles_, bytesOf(triangles), "scene triangles");
-    geometry_ = &geometry;
     if (cutouts_) cutouts_->setTriangles(geometry);
     std::copy(std::begin(geometry.ranges), std::end(geometry.ranges), std::begin(ranges_));
     hasTopology_ = true;

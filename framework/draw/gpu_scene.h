@@ -51,7 +51,7 @@ private:
     void linkVertexArray();
 
     const Scene& scene_;
-    const Geometry* geometry_ = nullptr; // of the topology
+    const Geometry* geometry_ = nullptr; // of the last update(), for cutouts that are asked for later
     SceneTextures colours_, data_;
     std::optional<Cutouts> cutouts_; // once they are asked for: their alpha takes 4 bytes a texel
     gl::Buffer materials_, lights_;

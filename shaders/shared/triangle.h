@@ -74,9 +74,9 @@ inline float edgeArea(vec2 b, vec2 c, OUT(int) side) {
     return area;
 }
 
-// Is there an intersection with tMin <= t <= tMax, from either side? An edge or vertex that triangles share belongs to
-// exactly one of those that meet around the ray: a surface is met once, and no ray slips through. That holds since a corner
-// lies at the same place beside the ray for all triangles that share it. Degenerate triangles are missed.
+// Is there an intersection with tMin <= t <= tMax (0 <= tMin), from either side? An edge or vertex that triangles share
+// belongs to exactly one of those that meet around the ray: a surface is met once, and no ray slips through. That holds since
+// a corner lies at the same place beside the ray for all triangles that share it. Degenerate triangles are missed.
 inline bool intersectTriangle(TriangleRay ray, float tMin, float tMax, vec3 p0, vec3 p1, vec3 p2, OUT(TriangleHit) hit) {
     const vec3 a = p0 - ray.origin;
     const vec3 b = p1 - ray.origin;

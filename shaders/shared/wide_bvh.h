@@ -46,8 +46,9 @@ inline WideRay wideRay(vec3 inverse) {
     return ray;
 }
 
-// Where a box's interval begins and ends. Floats of one sign are ordered as their bits are: with tMin at 0 or above, a
-// plane behind the start loses against it, and an end behind the start lies below every beginning.
+// Where a box's interval begins, and whether it ends later. Floats of one sign are ordered as their bits are: with tMin at 0
+// or above, a plane behind the start loses against it, and an end behind the start lies below every beginning. The end is
+// widened as in intersectBox().
 inline bool wideMeets(vec3 near, vec3 far, int tMin, int tMax, OUT(int) entry) {
     entry = max(max(floatBitsToInt(near.x), floatBitsToInt(near.y)), max(floatBitsToInt(near.z), tMin));
     const int leave = min(min(floatBitsToInt(far.x), floatBitsToInt(far.y)), min(floatBitsToInt(far.z), tMax));
@@ -56,9 +57,9 @@ inline bool wideMeets(vec3 near, vec3 far, int tMin, int tMax, OUT(int) entry) {
 
 // Which children of a node the ray's interval meets (0 <= tMin), a bit each, and where it enters them (as bits).
 //
-// Nothing is missed that the exact box of the triangles would meet: planes lie outside the box by wideMargin of a step at
-// least, which is more than rounding takes where the node is near (the products then have up to 2^14 steps), and far off,
-// where rounding is a share of the distance, the far ends are widened as in intersectBox().
+// Nothing is missed that the exact box of the triangles would meet: planes lie outside the box by 1/256 of a step at least,
+// which is more than rounding takes where the node is near (the products then have up to 2^14 steps), and far off, where
+// rounding is a share of the distance, the end is widened.
 inline uint wideMet(WideRay ray, vec3 origin, float tMin, float tMax, uvec4 a, uvec4 b, uvec4 c, OUT(ivec4) entries) {
     const vec3 unit = vec3(uintBitsToFloat((a.w << 23u) & 0x7f800000u), uintBitsToFloat((a.w << 15u) & 0x7f800000u),
                            uintBitsToFloat((a.w << 7u) & 0x7f800000u));
