@@ -1,5 +1,6 @@
 // kestrel-editor: views, edits and compares graphs in a window.
 #include "core/files.h"
+#include "freed_memory.h"
 #include "named.h"
 #include "window.h"
 #include <CLI/CLI.hpp>
@@ -39,6 +40,7 @@ int run(const Arguments& arguments) {
 } // namespace
 
 int main(int argc, char** argv) {
+    keepFreedMemory();
     CLI::App app("Views, edits and compares Kestrel's graphs");
     Arguments arguments;
     app.add_option("GRAPH", arguments.graph, "Graph file, or the name of one that comes with Kestrel");

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/version.h"
+#include "freed_memory.h"
 #include "machine.h"
 #include "named.h"
 #include <algorithm>
@@ -126,6 +127,7 @@ int runGuarded(const Run& run) {
 } // namespace
 
 int main(int argc, char** argv) {
+    keepFreedMemory();
     setReplayCommand(quotedCommand(argc, argv));
     std::set_terminate(endByException);
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, endBySignal);
