@@ -41,8 +41,7 @@ void Editor::showPopups() {
             };
             const bool yes = ImGui::Button("Yes (y)") || key('y');
             ImGui::SameLine();
-            const bool no = ImGui::Button("No (n)") || key('n') ||
-                            ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+            const bool no = ImGui::Button("No (n)") || key('n') || keyIsPressed(ImGuiKey_Escape);
             if (yes || no) {
                 question_.clear();
                 const std::function<void()> then = std::exchange(afterQuestion_, nullptr);
@@ -98,8 +97,7 @@ void Editor::showAsked() {
     const bool entered = ImGui::InputText("##typed", &typed_, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::PopItemWidth();
     std::optional<Asked> done;
-    if (entered || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
-        done = std::exchange(asked_, std::nullopt);
+    if (entered || keyIsPressed(ImGuiKey_Escape)) done = std::exchange(asked_, std::nullopt);
     if (done) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
     if (done && entered) done->then(std::string(typed_)); // may ask again

@@ -80,8 +80,10 @@ void Window::frame(Editor& editor, Theme& theme, const std::function<void(KeyEve
     if (editor.takeThemeChange()) {
         theme.loadFonts();
         theme.apply();
+#if IMGUI_VERSION_NUM < 19200 // later it fills its texture as letters are asked for
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
+#endif
         redraw_.forget();
     }
     const auto begin = std::chrono::steady_clock::now();

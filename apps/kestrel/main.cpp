@@ -137,24 +137,15 @@ int main(int argc, char** argv) {
     app.footer("'kestrel COMMAND --help' tells a command's options.\n"
                "Exit status: 0 done; 1 a measured check failed; 2 bad input or usage; 3 the machine lacks "
                "something.");
-    bool quiet = false, verbose = false, gl = false;
-    Run run, tellVersion;
-    // Before --version, which ends the parsing: options are taken in the order in which they stand here.
-    CLI::Option* withGl =
-        app.add_flag("--gl", gl,
-                     "With --version, for reports of faults: print what this machine's OpenGL offers, and "
-                     "what Kestrel does "
-                     "otherwise for what it lacks, as JSON for 'kestrel check --capabilities'");
-    withGl->needs(app.add_flag_callback(
-        "--version,-V",
-        [&] {
-            tellVersion = [gl] {
-                fmt::print("{}", gl ? machineJson(loadedRegistry()) : versionText());
-                return static_cast<int>(ExitStatus::Done);
-            };
-            throw CLI::Success();
-        },
-        "Print the version and the parts and backends that are in"));
+    bool quiet = false, verbose = false, gl = false, asked = false;
+    Run run;
+    CLI::Option* withVersion =
+        app.add_flag("--version,-V", asked, "Print the version and the parts and backends that are in");
+    app.add_flag("--gl", gl,
+                 "With --version, for reports of faults: print what this machine's OpenGL offers, and what "
+                 "Kestrel does "
+                 "otherwise for what it lacks, as JSON for 'kestrel check --capabilities'")
+        ->needs(withVersion);
     app.add_flag("--quiet,-q", quiet, "Print nothing but errors, and what is asked for as data");
     app.add_flag("--verbose,-v", verbose, "Print what is done");
     app.require_subcommand(1);
@@ -169,16 +160,25 @@ int main(int argc, char** argv) {
     addSweepCommand(app, run);
     addTuneCommand(app, run);
     addStressCommand(app, run);
+    // Asked for, the version is told whatever else is said or lacks: releases of CLI11 differ in when they
+    // call what belongs to an option.
+    const auto tellVersion = [&] {
+        return runGuarded([gl = app.count("--gl") > 0] {
+            fmt::print("{}", gl ? machineJson(loadedRegistry()) : versionText());
+            return static_cast<int>(ExitStatus::Done);
+        });
+    };
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& done) {
-        if (tellVersion) return runGuarded(tellVersion);
         return app.exit(done);
     } catch (const CLI::ParseError& error) {
+        if (withVersion->count() > 0) return tellVersion();
         const std::string unknown = unknownCommand(app, argc, argv);
         return tell(ExitStatus::BadInput, (unknown.empty() ? oneLine(error.what()) : unknown) +
                                               " ('kestrel --help' tells the usage)");
     }
+    if (withVersion->count() > 0) return tellVersion();
     if (quiet) reportStream() = nullptr;
     setLogLevel(quiet ? LogLevel::Error : verbose ? LogLevel::Debug : LogLevel::Warning);
     return runGuarded(run);

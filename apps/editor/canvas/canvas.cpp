@@ -26,7 +26,7 @@ void Canvas::show(Session& session, const Theme& theme, const Say& say) {
 
 void Canvas::layOut(Session& session, const Theme& theme) {
     const auto measure = [&](const std::string& text) {
-        const ImFont* font = theme.fontFor(15);
+        ImFont* font = theme.fontFor(15);
         return static_cast<double>(font->CalcTextSizeA(13, 1e6f, 0, text.c_str()).x);
     };
     if (boxesOf_ == session.document.revision() && boxes_.size() == session.document.graph().passes.size())

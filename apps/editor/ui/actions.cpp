@@ -92,10 +92,9 @@ void Palette::show() {
                 if (entry.title == title && matchRank(title, typed_) < 0) found.push_back({10'000, &entry});
     std::stable_sort(found.begin(), found.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
-    const auto pressed = [](ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
     if (!found.empty()) {
-        if (pressed(ImGuiKey_DownArrow)) chosen_ = (chosen_ + 1) % found.size();
-        if (pressed(ImGuiKey_UpArrow)) chosen_ = (chosen_ + found.size() - 1) % found.size();
+        if (keyIsPressed(ImGuiKey_DownArrow)) chosen_ = (chosen_ + 1) % found.size();
+        if (keyIsPressed(ImGuiKey_UpArrow)) chosen_ = (chosen_ + found.size() - 1) % found.size();
         chosen_ = std::min(chosen_, found.size() - 1);
     }
     const Entry* taken = nullptr;
@@ -106,9 +105,9 @@ void Palette::show() {
         if (i == chosen_) ImGui::SetScrollHereY();
     }
     ImGui::EndChild();
-    if (!fresh_ && (pressed(ImGuiKey_Enter) || pressed(keypadEnter)) && !found.empty())
+    if (!fresh_ && (keyIsPressed(ImGuiKey_Enter) || keyIsPressed(keypadEnter)) && !found.empty())
         taken = found[chosen_].second;
-    const bool leaves = pressed(ImGuiKey_Escape) ||
+    const bool leaves = keyIsPressed(ImGuiKey_Escape) ||
                         (!fresh_ && !ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows));
     ImGui::End();
     fresh_ = false;

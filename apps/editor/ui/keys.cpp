@@ -58,4 +58,12 @@ bool keyIsDown(char letter) {
 #endif
 }
 
+bool keyIsPressed(ImGuiKey key) {
+#if IMGUI_VERSION_NUM < 18700
+    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
+#else
+    return ImGui::IsKeyPressed(key);
+#endif
+}
+
 } // namespace kestrel::edit

@@ -1,6 +1,7 @@
 // Keys as GLFW names them, apart from Dear ImGui, whose key codes changed between the versions that Debian
 // has.
 #pragma once
+#include <imgui.h>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ Chord chordOf(const std::string& text);
 
 // Whether a letter's key ('A' to 'Z') is held; within a frame of Dear ImGui.
 bool keyIsDown(char letter);
+
+// Whether one of Dear ImGui's own keys went down in this frame, or repeats.
+bool keyIsPressed(ImGuiKey key);
 
 // Keys that went down since the last frame, also by repetition.
 using KeyEvents = std::vector<Chord>;
