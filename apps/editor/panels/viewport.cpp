@@ -5,12 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <type_traits>
 
 namespace kestrel::edit {
 namespace {
 
-ImTextureID textureId(const gl::Texture& texture) {
-    return reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture.name()));
+// A pointer before Dear ImGui 1.91.4, a number since.
+template<class Id = ImTextureID>
+Id textureId(const gl::Texture& texture) {
+    if constexpr (std::is_pointer_v<Id>)
+        return reinterpret_cast<Id>(static_cast<std::intptr_t>(texture.name()));
+    else
+        return static_cast<Id>(texture.name());
 }
 
 } // namespace

@@ -45,10 +45,15 @@ void Theme::apply() const {
 }
 
 ImFont* Theme::fontFor(float pixels) const {
+#if IMGUI_VERSION_NUM < 19200
+    const auto sizeOf = [](const ImFont& font) { return font.FontSize; };
+#else
+    const auto sizeOf = [](const ImFont& font) { return font.LegacySize; };
+#endif
     ImFont* nearest = nullptr;
     float distance = std::numeric_limits<float>::max();
     for (ImFont* font : ImGui::GetIO().Fonts->Fonts) {
-        const float apart = std::abs(std::log(font->FontSize / std::max(pixels, 1.0f)));
+        const float apart = std::abs(std::log(sizeOf(*font) / std::max(pixels, 1.0f)));
         if (apart >= distance) continue;
         distance = apart;
         nearest = font;
