@@ -160,8 +160,8 @@ int main(int argc, char** argv) {
     addSweepCommand(app, run);
     addTuneCommand(app, run);
     addStressCommand(app, run);
-    // Asked for, the version is told whatever else is said or lacks: releases of CLI11 differ in when they
-    // call what belongs to an option.
+    // Asked for, the version is told whatever else is said or lacks. Not by a callback of its option: CLI11
+    // 2.3 calls that before it misses a subcommand, 2.6 after.
     const auto tellVersion = [&] {
         return runGuarded([gl = app.count("--gl") > 0] {
             fmt::print("{}", gl ? machineJson(loadedRegistry()) : versionText());

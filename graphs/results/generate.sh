@@ -7,6 +7,7 @@
 # KESTREL names the program (build/bin/kestrel). What no table shows (commands with the paths of one machine, steps, what was left
 # out) is not kept.
 set -euo pipefail
+shopt -s nullglob
 here=$(cd "$(dirname "$0")" && pwd)
 kestrel=${KESTREL:-$here/../../build/bin/kestrel}
 made=$(mktemp -d)
