@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Installs what is missing and builds into build/ (or $KESTREL_BUILD). Usage: apps/build.sh [test | demo] [CMAKE ARGUMENT]...;
-# `demo` builds what apps/demo.sh runs: the command line, and the plugins of its graphs.
+# `demo` builds what apps/demo.sh runs: the command line without what makes many pictures, and the plugins of its graphs.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=${KESTREL_BUILD:-$root/build}
-tests=OFF target=all passes=
+tests=OFF target=all passes= folders=-UKESTREL_FOLDERS
 if [ "${1:-}" = demo ]; then
     shift
     target=kestrel_app
     passes='ambient_occlusion;bvh;filter;gbuffer;occupancy;reference'
+    folders='-DKESTREL_FOLDERS=core;image;scene;reference;shader;graph;plugin;gl;draw;execute'
 fi
 if [ "${1:-}" = test ]; then
     tests=ON
@@ -20,8 +21,8 @@ fi
 # What a build has stays: the demo must not throw away what another command built.
 has() { grep -q "^$1\$" "$build/CMakeCache.txt" 2>/dev/null; }
 has KESTREL_TESTS:BOOL=ON && tests=ON
-has KESTREL_PASSES:STRING= && passes=
-cmake -S "$root" -B "$build" -G Ninja -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -DKESTREL_TESTS=$tests "-DKESTREL_PASSES=$passes" "$@" >"$build.log" 2>&1 ||
+has KESTREL_PASSES:STRING= && passes= folders=-UKESTREL_FOLDERS
+cmake -S "$root" -B "$build" -G Ninja -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -DKESTREL_TESTS=$tests "-DKESTREL_PASSES=$passes" "$folders" "$@" >"$build.log" 2>&1 ||
     { cat "$build.log" >&2; exit 2; }
 grep -- '-- Left out' "$build.log" || true
 rm -f "$build.log"

@@ -1,4 +1,4 @@
-#include "stress_curve.h"
+#include "studies/stress_curve.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "core/progress.h"

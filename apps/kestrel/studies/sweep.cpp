@@ -4,7 +4,7 @@
 #include "core/files.h"
 #include "core/log.h"
 #include "measure/sweep_schema.h"
-#include "sweep_command.h"
+#include "studies/sweep_command.h"
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -11,7 +11,7 @@
 #include "measure/stress/stress_limits.h"
 #include "measure/stress/stress_workers.h"
 #include "measure/sweep_results.h"
-#include "stress_curve.h"
+#include "studies/stress_curve.h"
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,7 +6,7 @@
 #include "measure/tune/tune_folder.h"
 #include "measure/tune/tune_run.h"
 #include "measure/tune/tune_space.h"
-#include "sweep_command.h"
+#include "studies/sweep_command.h"
 #include <fmt/format.h>
 #include <memory>
 

@@ -1,4 +1,4 @@
-#include "sweep_command.h"
+#include "studies/sweep_command.h"
 #include "core/log.h"
 #include "core/progress.h"
 #include "core/version.h"

@@ -1,4 +1,4 @@
-#include "measure/profile.h"
+#include "execute/profile.h"
 #include <algorithm>
 
 namespace kestrel {
