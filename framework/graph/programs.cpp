@@ -64,11 +64,14 @@ void bindModules(const Network& network, int node, const std::vector<ModuleUse>&
 // but may snap only if the outermost consumer bears it, and has rays by number only from one that has them.
 ModuleInstance instanceOf(const Network& network, const Provider& provider, Bits taken) {
     ModuleInstance instance{provider.module->shader, provider.module->defines, {}};
-    constexpr std::pair<Bits, const char*> defines[] = {
-        {requests::AnyHit, "REQUESTS_ANY"},      {requests::ClosestHit, "REQUESTS_CLOSEST"},
-        {requests::Surface, "REQUESTS_SURFACE"}, {requests::Snap, "REQUESTS_SNAP"},
-        {requests::AllHits, "REQUESTS_ALL"},     {requests::ManyRays, "REQUESTS_MANY"}};
-    constexpr Bits outermost = requests::Snap | requests::ManyRays;
+    constexpr std::pair<Bits, const char*> defines[] = {{requests::AnyHit, "REQUESTS_ANY"},
+                                                        {requests::ClosestHit, "REQUESTS_CLOSEST"},
+                                                        {requests::Surface, "REQUESTS_SURFACE"},
+                                                        {requests::Snap, "REQUESTS_SNAP"},
+                                                        {requests::AllHits, "REQUESTS_ALL"},
+                                                        {requests::ManyRays, "REQUESTS_MANY"},
+                                                        {requests::ManyClosest, "REQUESTS_MANY_CLOSEST"}};
+    constexpr Bits outermost = requests::Snap | requests::ManyRays | requests::ManyClosest;
     for (const auto& [bit, name] : defines)
         if ((taken & bit) != 0) instance.defines[name] = "1";
     for (const ModuleUse& use : provider.module->modules) {

@@ -78,7 +78,8 @@ Declaration BvhPass::declare(const World& world, const Inputs&, const Demand& de
         declaration.modules.push_back(std::move(module));
     };
     if (demand.reads("tracer"))
-        provide("tracer", "PROVIDES_TRACER", provides::Surface | (wide ? provides::ManyRays : 0));
+        provide("tracer", "PROVIDES_TRACER",
+                provides::Surface | (wide ? provides::ManyRays | provides::ManyClosest : 0));
     if (demand.reads("hits")) provide("hits", "PROVIDES_HITS", provides::Surface);
     // In what order all hits of a ray are visited hangs on the tree, so that where they are read it is one of
     // this frame alone.

@@ -11,8 +11,10 @@ namespace {
 constexpr std::uint32_t groupSize = 64;
 constexpr std::uint32_t groupsPerRow = 32768;
 // That an invocation traces where the tracer takes many: enough that a lane seldom waits for others, few
-// enough that the loops of all together stay below what drivers allow (lib/iterations.glsl).
-constexpr std::uint32_t raysTogether = 32;
+// enough that the loops of all together stay below what drivers allow (lib/iterations.glsl). A walk to what
+// is nearest passes all that lies one upon another.
+constexpr std::uint32_t anyTogether = 32;
+constexpr std::uint32_t closestTogether = 16;
 } // namespace
 
 PassType RayQuery::type() {
@@ -52,9 +54,10 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
     // What a snapped ray was replaced by is told ray by ray.
     const Bits given = inputs["tracer"].desc.provides;
     const bool snaps = snap && (given & (provides::Snaps | provides::AlwaysSnaps)) != 0;
-    if (query == Query::Any && texels && !snaps && (given & provides::ManyRays) != 0) {
-        step.modules = {{"tracer", requests::ManyRays}};
-        step.defines.emplace("RAYS", std::to_string(raysTogether));
+    const bool any = query == Query::Any;
+    if (texels && !snaps && (given & (any ? provides::ManyRays : provides::ManyClosest)) != 0) {
+        step.modules = {{"tracer", any ? requests::ManyRays : requests::ManyClosest}};
+        step.defines.emplace("RAYS", std::to_string(any ? anyTogether : closestTogether));
     }
     step.uses.push_back({.port = "rays", .access = texels ? Access::Image : Access::Storage});
     const auto give = [&](const char* port, const char* define, std::uint64_t bytes) {
@@ -73,7 +76,8 @@ Declaration RayQuery::declare(const World& world, const Inputs& inputs, const De
 
 void RayQuery::execute(const Step& step, Commands& commands) {
     const auto count = static_cast<std::uint32_t>(rayCount(commands.desc("rays")));
-    const std::uint32_t perGroup = groupSize * (step.defines.contains("RAYS") ? raysTogether : 1);
+    const std::uint32_t together = query == Query::Any ? anyTogether : closestTogether;
+    const std::uint32_t perGroup = groupSize * (step.defines.contains("RAYS") ? together : 1);
     const std::uint32_t groups = (count + perGroup - 1) / perGroup;
     commands.dispatch(std::min(groups, groupsPerRow), (groups + groupsPerRow - 1) / groupsPerRow);
 }

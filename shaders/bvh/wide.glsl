@@ -169,6 +169,71 @@ uint M(anyHits)(uint wanted) {
 }
 #endif
 
+#ifdef REQUESTS_MANY_CLOSEST
+// Likewise what each of them meets first.
+void M(closestHits)(uint wanted) {
+#ifdef MATERIAL_MASKED
+    const int stretch = 12; // items
+#else
+    const int stretch = 24; // as good on scattered rays, better on those that stay together
+#endif
+    M(Walk) walk;
+    walk.size = -1;
+    Ray ray;
+    uint current = 0u, nearest = 0xffffffffu;
+    TriangleHit best;
+    bool idle = true;
+    while (wanted != 0u || !idle) {
+        ITERATION;
+        if (idle) {
+            current = uint(findLSB(wanted));
+            wanted &= wanted - 1u;
+            ray = M(ray)(current);
+            walk = M(start)(ray);
+            best = TriangleHit(ray.tMax, 0.0, 0.0);
+            nearest = 0xffffffffu;
+        }
+#ifdef MATERIAL_MASKED
+        bool met = false, tested = false;
+        uint triangle = 0u;
+        TriangleHit candidate = best;
+#endif
+        for (int i = 0; i < stretch; ++i) {
+            ITERATION;
+            TriangleHit hit;
+            uvec3 ids;
+            bool meets = M(step)(walk, ray.tMin, best.t, true, hit, ids);
+#ifdef MATERIAL_MASKED
+            if (meets) {
+                met = true;
+                tested = ids.z >= 2u;
+                triangle = ids.x;
+                candidate = hit;
+                break;
+            }
+#else
+            // Among hits at one distance the lowest triangle counts.
+            if (meets && (hit.t < best.t || ids.x < nearest)) {
+                best = hit;
+                nearest = ids.x;
+            }
+#endif
+            if (walk.size < 0) break;
+        }
+#ifdef MATERIAL_MASKED
+        if (tested) met = sceneCovers(triangle, vec2(candidate.u, candidate.v));
+        if (met && (candidate.t < best.t || triangle < nearest)) {
+            best = candidate;
+            nearest = triangle;
+        }
+#endif
+        idle = walk.size < 0;
+        if (idle)
+            M(give)(current, nearest != 0xffffffffu, Hit(best.t, 0.0, 0u, uvec2(nearest, packUnorm2x16(vec2(best.u, best.v)))));
+    }
+}
+#endif
+
 #if defined(REQUESTS_CLOSEST) || defined(REQUESTS_SURFACE)
 bool M(closestHit)(Ray ray, out Hit hit) {
     M(Walk) walk = M(start)(ray);

@@ -5,12 +5,14 @@
 //     bool M(closestHit)(Ray ray, out Hit hit)    the nearest of it             (if REQUESTS_CLOSEST or REQUESTS_SURFACE)
 //     Surface M(surface)(Ray ray, Hit hit)        evaluates a hit               (if REQUESTS_SURFACE)
 //
-// and, if it provides that (provides::ManyRays of graph/many_rays.h), in place of the queries
+// and, if it provides that (provides::ManyRays or ManyClosest of graph/many_rays.h), in place of the queries
 //
 //     uint M(anyHits)(uint wanted)                which of up to 32 rays meet anything, a bit each (if REQUESTS_MANY)
+//     void M(closestHits)(uint wanted)            the nearest of each              (if REQUESTS_MANY_CLOSEST)
 //
 // which has each ray of `wanted`, aimed, from the consumer's Ray M(ray)(uint i), defined under its port's name (`tracer_ray`)
-// before it includes the module. It may ask for one several times.
+// before it includes the module. It may ask for one several times. What is nearest it gives to the consumer's
+// void M(give)(uint i, bool met, Hit hit), once for each ray of `wanted`, in any order.
 //
 // A consumer fills a Ray, calls aim once, then traces. Everything is in render space.
 #include "lib/surface.glsl"

@@ -49,6 +49,16 @@ Ray tracer_ray(uint i) {
     tracer_aim(ray);
     return ray;
 }
+void put(int id, bool met, Hit hit) {
+    float t = met ? hit.t : rayInfinity;
+#ifdef DISTANCES
+    distances[id] = t;
+#endif
+#ifdef HITS
+    hits[id] = HitRecord(t, 1.0, met ? hit.id.x : 0u, met ? hit.id.y : 0u, RAY_TEXEL(3 * id + 1).xyz, met ? hit.source : 0u);
+#endif
+}
+void tracer_give(uint i, bool met, Hit hit) { put(rayNumber(i), met, hit); }
 #include <port:tracer>
 
 void main() {
@@ -59,19 +69,16 @@ void main() {
         int id = rayNumber(i);
         if (id < count && (floatBitsToUint(RAY_TEXEL(3 * id + 2).w) & 1u) != 0u) wanted |= 1u << i;
     }
-    uint met = tracer_anyHits(wanted);
+#ifdef CLOSEST
+    tracer_closestHits(wanted);
+    uint met = 0u, left = ~wanted;
+#else
+    uint met = tracer_anyHits(wanted), left = 0xffffffffu;
+#endif
     for (uint i = 0u; i < uint(RAYS); ++i) {
         ITERATION;
         int id = rayNumber(i);
-        if (id < count) {
-            float t = (met >> i & 1u) != 0u ? 0.0 : rayInfinity;
-#ifdef DISTANCES
-            distances[id] = t;
-#endif
-#ifdef HITS
-            hits[id] = HitRecord(t, 1.0, 0u, 0u, RAY_TEXEL(3 * id + 1).xyz, 0u);
-#endif
-        }
+        if (id < count && (left >> i & 1u) != 0u) put(id, (met >> i & 1u) != 0u, Hit(0.0, 0.0, 0u, uvec2(0u)));
     }
     ITERATIONS_END;
 }
