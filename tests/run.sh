@@ -126,7 +126,7 @@ tidy)
     build "$root/build-tidy" -DKESTREL_UNITY=ON -DKESTREL_PCH=OFF -- kestrel_stamp kestrel_glad
     find "$root/build-tidy/framework" "$root/build-tidy/passes" -path '*/Unity/*.cxx' -print0 |
         xargs -0 -P "$(nproc)" -n 1 clang-tidy --quiet -p "$root/build-tidy" --checks=-bugprone-suspicious-include \
-            --extra-arg=-Wno-unknown-warning-option
+            --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-unused-command-line-argument
     ;;
 all)
     "$0"

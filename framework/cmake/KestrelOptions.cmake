@@ -14,6 +14,9 @@ endif()
 # unnamed-namespace types is still seen by its own file alone.
 if(KESTREL_UNITY)
     target_compile_options(kestrel_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:$<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>>)
+    # GCC collects its garbage before there is much: 3 (graph) to 9 (scene) per cent of what a group of files takes.
+    target_compile_options(kestrel_options INTERFACE
+        "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<COMPILE_LANGUAGE:CXX>>:SHELL:--param ggc-min-heapsize=500000>")
 else()
     target_compile_options(kestrel_options INTERFACE -Wshadow)
 endif()

@@ -118,7 +118,7 @@ public:
                 for (int l = 0; l < cells; ++l)
                     next[static_cast<size_t>(v)] +=
                         kernel_[static_cast<size_t>(v * cells + l)] * order[static_cast<size_t>(l)];
-            order = next;
+            order.swap(next);
             for (size_t v = 0; v < cells; ++v) sum[v] += order[v];
         }
         const double place = cosView * cells - 0.5;

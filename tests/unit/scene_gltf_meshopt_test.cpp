@@ -61,10 +61,9 @@ TEST(MeshoptAttributes, GiveBackWhatWasEncodedInEveryWay) {
 
 TEST(MeshoptAttributes, TheSpecifiedExampleOfFourBitDeltas) {
     // Appendix A: 16 zigzag deltas of 4 bits, two of them whole bytes; as one group of control mode 1.
-    const std::vector<std::uint8_t> packed = {0x17, 0x5f, 0xf0, 0xbc, 0x77, 0xa9, 0x21, 0x00, 0x34, 0xb5};
     const std::vector<int> deltas = {-1, -4, -3, 26, -91, 0, -6, 6, -4, -4, 5, -5, 1, -1, 0, 0};
-    std::vector<std::uint8_t> stream = {0xA1, 0b10101001, 0b10};
-    stream.insert(stream.end(), packed.begin(), packed.end());
+    std::vector<std::uint8_t> stream = {0xA1, 0b10101001, 0b10, 0x17, 0x5f, 0xf0, 0xbc,
+                                        0x77, 0xa9,       0x21, 0x00, 0x34, 0xb5};
     stream.resize(stream.size() + 24, 0);
     std::vector<std::uint8_t> decoded(16 * 4);
     ASSERT_TRUE(
