@@ -35,8 +35,9 @@ def test_what_may_be_absent_is_optional():
 
 
 # Of all files that are compiled, how many may include what takes a second or more to read, directly or by our headers, besides
-# what is precompiled (glm.hpp, quaternion.hpp; gtest and gmock in tests). More means a header of ours that brings it along.
-HEAVY = {"nlohmann/json.hpp": 65, "CLI/CLI.hpp": 13, "tiny_gltf.h": 10, "glm/gtc/matrix_transform.hpp": 65, "imgui.h": 30,
+# what is precompiled (glm.hpp, quaternion.hpp; gtest and gmock in tests). More means a header of ours that brings it along. (Of CLI11's
+# files never all are compiled: no_studies.cpp stands for those in studies/.)
+HEAVY = {"nlohmann/json.hpp": 65, "CLI/CLI.hpp": 14, "tiny_gltf.h": 10, "glm/gtc/matrix_transform.hpp": 65, "imgui.h": 30,
          "spdlog/spdlog.h": 1, "glslang/Public/ShaderLang.h": 1, "gtest/gtest.h outside of tests": 0}
 PLACES = ["framework", "passes", "", "tests", "tests/gl", "apps/common", "apps/editor", "apps/kestrel"]
 
