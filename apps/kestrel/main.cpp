@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
     addTuneCommand(app, run);
     addStressCommand(app, run);
     // Asked for, the version is told whatever else is said or lacks. Not by a callback of its option: CLI11
-    // 2.3 calls that before it misses a subcommand, 2.6 after.
+    // 2.1 (Debian 12) calls that before it misses a subcommand, 2.6 after.
     const auto tellVersion = [&] {
         return runGuarded([gl = app.count("--gl") > 0] {
             fmt::print("{}", gl ? machineJson(loadedRegistry()) : versionText());
