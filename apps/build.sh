@@ -4,12 +4,12 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=${KESTREL_BUILD:-$root/build}
-tests=OFF target=all passes= folders=-UKESTREL_FOLDERS
+tests=OFF target=all passes= studies=ON
 if [ "${1:-}" = demo ]; then
     shift
     target=kestrel_app
     passes='ambient_occlusion;bvh;filter;gbuffer;occupancy;reference'
-    folders='-DKESTREL_FOLDERS=core;image;scene;reference;shader;graph;plugin;gl;draw;execute'
+    studies=OFF
 fi
 if [ "${1:-}" = test ]; then
     tests=ON
@@ -21,8 +21,8 @@ fi
 # What a build has stays: the demo must not throw away what another command built.
 has() { grep -q "^$1\$" "$build/CMakeCache.txt" 2>/dev/null; }
 has KESTREL_TESTS:BOOL=ON && tests=ON
-has KESTREL_PASSES:STRING= && passes= folders=-UKESTREL_FOLDERS
-cmake -S "$root" -B "$build" -G Ninja -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -DKESTREL_TESTS=$tests "-DKESTREL_PASSES=$passes" "$folders" "$@" >"$build.log" 2>&1 ||
+has KESTREL_PASSES:STRING= && passes= studies=ON
+cmake -S "$root" -B "$build" -G Ninja -DKESTREL_UNITY=ON -DKESTREL_PCH=ON -DKESTREL_TESTS=$tests "-DKESTREL_PASSES=$passes" -DKESTREL_STUDIES=$studies "$@" >"$build.log" 2>&1 ||
     { cat "$build.log" >&2; exit 2; }
 grep -- '-- Left out' "$build.log" || true
 rm -f "$build.log"

@@ -1,7 +1,7 @@
 // Pictures, sequences and figures as files, and the command line that makes the same.
 #include "core/files.h"
 #include "editor.h"
-#include "execute/run_stats.h"
+#include "measure/run_stats.h"
 #include <charconv>
 #include <fmt/format.h>
 #include <imgui.h>

@@ -3,8 +3,8 @@
 #include "edit/document.h"
 #include "edit/layout.h"
 #include "edit/problems.h"
-#include "execute/profile.h"
 #include "execute/renderer.h"
+#include "measure/profile.h"
 #include "scene/setup.h"
 #include <filesystem>
 #include <functional>

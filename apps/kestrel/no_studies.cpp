@@ -1,4 +1,4 @@
-// In place of studies/ where framework/measure is not built: its commands say where they are to be had.
+// In place of studies/ where KESTREL_STUDIES is off: its commands say where they are to be had.
 #include "commands.h"
 #include "core/error.h"
 

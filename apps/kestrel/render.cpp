@@ -5,9 +5,9 @@
 #include "core/progress.h"
 #include "core/standard_output.h"
 #include "execute/renderer.h"
-#include "execute/run_stats.h"
 #include "gl/context.h"
 #include "graph/report.h"
+#include "measure/run_stats.h"
 #include "output_files.h"
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // The twelve behaviours of people who wire all day (issue and README name them), each in the window with its
 // own test.
 #include "editor_window_fixture.h"
-#include "execute/run_stats.h"
+#include "measure/run_stats.h"
 
 namespace kestrel::edit {
 namespace {

@@ -1,9 +1,9 @@
 // A graph on a scene, frame after frame, on the thread of gpu.h.
 #include "bindings.h"
 #include "core/log.h"
-#include "execute/run_stats.h"
 #include "gpu.h"
 #include "graph/report.h"
+#include "measure/run_stats.h"
 #include "named.h"
 #include <fmt/format.h>
 #include <map>

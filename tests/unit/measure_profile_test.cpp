@@ -1,5 +1,5 @@
-#include "execute/profile.h"
-#include "execute/run_stats.h"
+#include "measure/profile.h"
+#include "measure/run_stats.h"
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "execute/run_stats.h"
+#include "measure/run_stats.h"
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "execute/profile.h"
+#include "measure/profile.h"
 #include <algorithm>
 
 namespace kestrel {

@@ -1,7 +1,7 @@
 // The report of a run, as `render --stats` writes it: scripts rely on its keys; keys are only ever added.
 #pragma once
 #include "core/spin.h"
-#include "execute/profile.h"
+#include "measure/profile.h"
 #include <string>
 #include <utility>
 #include <vector>
